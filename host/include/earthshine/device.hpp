@@ -1,0 +1,82 @@
+#pragma once
+// OpenCL devices: what is here, what matters to us about each, and which one to use.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace earthshine {
+
+/// How a kernel's surfaces are kept: OpenCL images, or one buffer of float planes with padded rows.
+enum class Storage { Image, Planar };
+
+/// How kernels are built and launched on a device. Defaults come from the tuning table (kernels/README.md).
+struct Tuning {
+    int lanes = 1;                     ///< pixels a work-item computes: 1, 4, 8 or 16
+    Storage storage = Storage::Image;  ///< of every surface
+    bool rsmRecords = true;            ///< gather from packed 32-byte records; false: from the RSM's three images
+    int localSizePx[2] = {0, 0};       ///< work-items a group, x and y
+    std::string reason;                ///< one line: where these values come from
+};
+
+/// What a device can do, asked once.
+struct DeviceCaps {
+    int index = 0;  ///< over all platforms, in the loader's order; what --device takes
+    std::string name, vendor, deviceVersion, driverVersion, openclCVersion, platformName, platformVersion;
+    std::string type;  ///< "GPU", "CPU", "accelerator" or "other"
+    bool available = false;
+    bool images = false;                    ///< image support at all
+    std::vector<std::string> imageFormats;  ///< of our four PixelFormats, those that images can be read and written in
+    std::vector<std::string> transports;  ///< "host", and "gl-sharing", "external-memory" if their extensions are there
+    int nativeFloatWidth = 0;
+    int computeUnits = 0;
+    std::size_t localMemoryBytes = 0;
+    std::size_t globalMemoryBytes = 0;
+    std::size_t maxAllocationBytes = 0;
+    std::size_t maxWorkGroupSize = 0;
+    std::size_t maxImageSizePx[2] = {0, 0};
+    bool unifiedMemory = false;
+    std::string unusable;  ///< why this device cannot run Earthshine; empty if it can
+    Tuning tuning;         ///< the defaults chosen for it
+};
+
+/// Every device of every platform that the ICD loader finds; empty without any. Never throws for a broken driver: such
+/// a device is listed with `unusable` set.
+std::vector<DeviceCaps> listDevices();
+
+/// The device that `spec` means: a number (DeviceCaps::index), a part of a device's or platform's name (any case), or
+/// "" for $EARTHSHINE_DEVICE, and without that the first usable GPU, else CPU, else anything.
+/// Throws UsageError if nothing or more than one device fits a name, DeviceError if there is none that works.
+/// `why`, if given, receives one line on the choice.
+DeviceCaps selectDevice(const std::string& spec, std::string* why = nullptr);
+
+/// What to change of a device's own defaults; for experiments and tests.
+struct DeviceOptions {
+    int lanes = 0;        ///< 0 = the tuning table's
+    std::string storage;  ///< "image", "planar", "" = the tuning table's
+    int rsmRecords = -1;  ///< 0, 1, -1 = the tuning table's
+    int localSizePx[2] = {0, 0};
+    bool profiling = true;  ///< stage times by profiling events; off for the last bit of speed on some drivers
+    std::string
+        kernelFolder;         ///< read kernel sources from here, not from the library; "" = $EARTHSHINE_KERNELS or none
+    std::string cacheFolder;  ///< "" = $EARTHSHINE_CACHE, else $XDG_CACHE_HOME/earthshine, else ~/.cache/earthshine;
+                              ///< "none" = off
+};
+
+/// An open device: context, queue and program cache. Shared by copies; the last one closes it. Close before GL.
+class Device {
+public:
+    /// Throws DeviceError if the device cannot be opened, UsageError for options that it does not have.
+    explicit Device(const DeviceCaps& caps, const DeviceOptions& options = {});
+
+    const DeviceCaps& caps() const noexcept;
+    const Tuning& tuning() const noexcept;
+
+    struct Impl;
+    Impl& impl() const noexcept { return *impl_; }
+
+private:
+    std::shared_ptr<Impl> impl_;
+};
+
+}  // namespace earthshine

@@ -1,0 +1,86 @@
+#pragma once
+// The whole OpenCL half of a frame: plain images in, light out.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "earthshine/device.hpp"
+#include "earthshine/frame.hpp"
+#include "earthshine/gl.hpp"
+#include "earthshine/settings.hpp"
+
+namespace earthshine {
+
+/// What a frame leaves behind. All but Display are RGBA32F with w = 1, or w = 0 on sky.
+enum class Output {
+    DirectIrradiance,    ///< lux
+    IndirectIrradiance,  ///< lux
+    Direct,              ///< cd/m^2: albedo / pi x direct irradiance + emission
+    Indirect,            ///< cd/m^2: albedo / pi x indirect irradiance
+    Color,               ///< cd/m^2: Direct + Indirect
+    Display,             ///< RGBA8, sRGB-encoded, alpha 255: Color through exposure and tone curve
+};
+inline constexpr const char* kOutputNames[] = {
+    "direct-irradiance", "indirect-irradiance", "direct", "indirect", "color", "display"};
+
+struct StageTime {
+    std::string stage;  ///< the kernel's name
+    double ms = 0;      ///< on the device, by profiling events; 0 if profiling is off
+};
+
+/// Runs frames on one device. Construction builds every kernel (slow, cached); surfaces are allocated by the first
+/// frame and whenever an extent changes. Thread-compatible.
+class Pipeline {
+public:
+    explicit Pipeline(const Device& device);
+    ~Pipeline();
+    Pipeline(Pipeline&&) noexcept;
+    Pipeline& operator=(Pipeline&&) noexcept;
+
+    /// Hands over a frame. The images are read until run() returns; those whose memory is aligned to 4096 bytes (as
+    /// HostImage's is) are used in place where the device shares the host's memory.
+    /// Throws InputError if the formats or extents are not those of frame.hpp, naming the image.
+    void setFrame(const FrameInputs& frame);
+
+    /// Computes the outputs of the frame that was set, and waits. `progress`, if given, hears fractions in [0; 1].
+    /// Throws UsageError for settings out of range, DeviceError if the device fails.
+    void run(const Settings& settings, const std::function<void(double)>& progress = {});
+
+    /// Copies an output of the last run to the host.
+    HostImage read(Output output);
+
+    /// The display transform of Color applied to any RGBA32F picture of the frame's extent, with the exposure of the
+    /// last run, so that pictures side by side compare: RGBA8, sRGB.
+    HostImage toDisplay(const ImageView& radiance);
+
+    /// The factor from cd/m^2 to display-linear that the last run used.
+    float exposure() const;
+
+    /// The stages of the last run in order; a stage that ran more than once is summed.
+    std::vector<StageTime> stageTimes() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// The images of a frame, owned: what the `host` transport reads back from GL, what a folder of inputs holds.
+struct FrameImages {
+    Camera camera;
+    HostImage albedo, normalWs, depth, motion, emission;
+    std::vector<Light> lights;
+    HostImage rsmDepth, rsmNormalWs, rsmFlux, shadowDepth;  ///< one light's map below another's
+
+    /// Views of it all, for Pipeline::setFrame; valid while this lives and is not moved.
+    FrameInputs inputs() const;
+};
+
+/// Transport `host`: reads every texture of `frame` back into memory that OpenCL uses in place. The GL context that
+/// owns the textures must be current. Throws DeviceError on a GL error.
+FrameImages readBack(const GlFrame& frame, const Camera& camera, const std::vector<Light>& lights,
+                     const GlGetProcAddress& getProcAddress);
+
+}  // namespace earthshine

@@ -1,0 +1,67 @@
+#pragma once
+// Every setting of the OpenCL half: one home, one default, one line of help. The command line, the report and the
+// range check all walk forEachSetting(), so a setting has the same name everywhere.
+
+#include <limits>
+#include <span>
+
+namespace earthshine {
+
+/// How the sum over RSM texels is estimated. Both have the same mean: E = sum_p Phi_p / pi * G(p, x).
+enum class Estimator {
+    Disk,  ///< a few texels in a disk around the point's own projection (Dachsbacher & Stamminger 2005)
+    Sum,   ///< every texel: slow, exact
+};
+inline constexpr const char* kEstimatorNames[] = {"disk", "sum"};
+
+/// From scene-linear radiance to a display.
+enum class ToneCurve {
+    Filmic,  ///< the ACES curve as fitted by Narkowicz 2015, then sRGB
+    Srgb,    ///< clip at 1, then sRGB
+};
+inline constexpr const char* kToneCurveNames[] = {"filmic", "srgb"};
+
+struct Settings {
+    Estimator estimator = Estimator::Disk;  ///< how indirect light is gathered
+    int sampleCount = 64;                   ///< [1; 4096] - disk: RSM texels a pixel
+    float radiusUv = 0.5f;                  ///< (0; 2] (fraction of the RSM's side) - disk: radius; sqrt(2) covers all
+    float shadowBiasTexels = 0.5f;          ///< [0; 16] (shadow map texels) - depth bias, constant part
+    float shadowSlopeBiasTexels = 1.5f;     ///< [0; 16] (shadow map texels) - depth bias a unit of slope
+    ToneCurve toneCurve = ToneCurve::Filmic;
+    bool autoExposure = true;    ///< the log-average luminance of the picture becomes mid-grey (0.18)
+    float exposureStops = 0.0f;  ///< [-32; 32] (stops) - times 2^x, on top of automatic exposure if that is on
+};
+
+/// What a person needs to know of one setting.
+struct SettingInfo {
+    const char* name;                         ///< as an option: --name; as a key of the report: name
+    const char* unit;                         ///< "" if it has none
+    double min, max;                          ///< numbers: the closed range
+    const char* help;                         ///< one line
+    std::span<const char* const> names = {};  ///< enums: the value's names in order
+};
+
+/// Calls visit(SettingInfo, value) for each setting; value is a reference to int, float, bool or an enum.
+template <class SettingsT, class Visitor>
+void forEachSetting(SettingsT& s, Visitor&& visit) {
+    visit(SettingInfo{"estimator", "", 0, 1, "how the RSM is summed: disk (few texels) or sum (all, slow, exact)",
+                      kEstimatorNames},
+          s.estimator);
+    visit(SettingInfo{"spp", "samples a pixel", 1, 4096, "disk: RSM texels that each pixel reads"}, s.sampleCount);
+    visit(SettingInfo{"radius", "of the RSM's side", 1e-4, 2, "disk: radius around the pixel's own projection"},
+          s.radiusUv);
+    visit(SettingInfo{"shadow-bias", "shadow map texels", 0, 16, "constant depth bias of the shadow test"},
+          s.shadowBiasTexels);
+    visit(SettingInfo{"shadow-slope-bias", "shadow map texels", 0, 16, "depth bias for each unit of slope"},
+          s.shadowSlopeBiasTexels);
+    visit(SettingInfo{"tone-curve", "", 0, 1, "filmic, or srgb (clipped)", kToneCurveNames}, s.toneCurve);
+    visit(SettingInfo{"auto-exposure", "", 0, 1, "the picture's log-average luminance becomes mid-grey"},
+          s.autoExposure);
+    visit(SettingInfo{"exposure", "stops", -32, 32, "brighter by 2^x, on top of automatic exposure if that is on"},
+          s.exposureStops);
+}
+
+/// Throws UsageError naming the first setting that is out of its range or not a number.
+void validate(const Settings& settings);
+
+}  // namespace earthshine

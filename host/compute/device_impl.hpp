@@ -1,0 +1,42 @@
+#pragma once
+// An open device as compute/, stages/ and pipeline/ see it.
+
+#include <string>
+#include <vector>
+
+#include "compute/cl.hpp"
+#include "earthshine/device.hpp"
+#include "earthshine/image.hpp"
+
+namespace earthshine {
+
+/// What was launched, for the stage times: filled by Kernel, read and cleared by the pipeline once a frame.
+struct Launch {
+    std::string kernel;
+    cl::Event event;
+};
+
+struct Device::Impl {
+    DeviceCaps caps;
+    DeviceOptions options;
+    Tuning tuning;
+    std::string cacheFolder;  ///< of compiled programs; "" = none
+    cl::Device device;
+    cl::Context context;
+    cl::CommandQueue queue;  ///< in order; the only one
+    std::vector<Launch> launches;
+
+    /// Runs `body`; what OpenCL refuses becomes a DeviceError that starts with `what` and names this device.
+    template <class Body>
+    auto checked(const std::string& what, Body&& body) {
+        return clChecked(what, caps.name, body);
+    }
+    cl::Buffer makeBuffer(std::size_t bytes, cl_mem_flags flags = CL_MEM_READ_WRITE);
+};
+
+/// The work-items a group of `kernel`: the tuning table's, cut to what the kernel and the device allow.
+struct LocalSize {
+    std::size_t x, y;
+};
+
+}  // namespace earthshine

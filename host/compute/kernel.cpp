@@ -1,0 +1,81 @@
+#include "compute/kernel.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "compute/kernel_source.hpp"
+#include "compute/program_cache.hpp"
+#include "earthshine/error.hpp"
+
+namespace earthshine {
+
+namespace {
+
+std::string buildOptions(const Tuning& tuning) {
+    return fmt::format("-cl-std=CL1.2 -cl-mad-enable -DES_DIALECT_CL -DLANES={} -DSTORAGE_PLANAR={} -DRSM_RECORDS={}",
+                       tuning.lanes, tuning.storage == Storage::Planar ? 1 : 0, tuning.rsmRecords ? 1 : 0);
+}
+
+}  // namespace
+
+Kernel::Kernel(const Device& device, std::string name) : device_(device), name_(std::move(name)) {
+    Device::Impl& impl = device_.impl();
+    const std::string source = expandKernel(name_ + ".cl", impl.options.kernelFolder);
+    arguments_ = argumentNames(source, name_, impl.tuning.rsmRecords);
+    impl.checked(name_ + ": building", [&] {
+        const cl::Program program =
+            buildProgram(impl.context, impl.device, name_, source, buildOptions(impl.tuning), impl.cacheFolder);
+        kernel_ = cl::Kernel(program, name_.c_str());
+        const auto limit = kernel_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(impl.device);
+        localSize_[0] = std::min<std::size_t>(std::size_t(impl.tuning.localSizePx[0]), limit);
+        localSize_[1] = std::max<std::size_t>(
+            std::min<std::size_t>(std::size_t(impl.tuning.localSizePx[1]), limit / localSize_[0]), 1);
+        return 0;
+    });
+}
+
+void Kernel::setRaw(std::string_view argument, std::size_t size, const void* value) {
+    const auto at = std::find(arguments_.begin(), arguments_.end(), argument);
+    if (at == arguments_.end()) throw DeviceError(fmt::format("{}: the kernel has no argument '{}'", name_, argument));
+    device_.impl().checked(fmt::format("{}: argument '{}' of {} bytes", name_, argument, size), [&] {
+        kernel_.setArg(cl_uint(at - arguments_.begin()), size, value);
+        return 0;
+    });
+}
+
+void Kernel::setMemory(std::string_view argument, const cl::Memory& memory) {
+    const cl_mem handle = memory();
+    setRaw(argument, sizeof handle, &handle);
+}
+
+Kernel& Kernel::set(std::string_view argument, const Surface& surface) {
+    setMemory(argument, surface.memory());
+    return setParams(std::string(argument) + "Layout", surface.layout());
+}
+
+Kernel& Kernel::set(std::string_view argument, const cl::Buffer& buffer) {
+    setMemory(argument, buffer);
+    return *this;
+}
+
+void Kernel::enqueue(Extent extent) {
+    const int lanes = device_.tuning().lanes;
+    enqueueItems(std::size_t((extent.widthPx + lanes - 1) / lanes), std::size_t(extent.heightPx));
+}
+
+void Kernel::enqueueItems(std::size_t x, std::size_t y) {
+    if (x == 0 || y == 0) return;
+    Device::Impl& impl = device_.impl();
+    impl.checked(fmt::format("{}: launching {} x {} items", name_, x, y), [&] {
+        const cl::NDRange local(localSize_[0], localSize_[1]);
+        const auto roundUp = [](std::size_t n, std::size_t to) { return (n + to - 1) / to * to; };
+        const cl::NDRange global(roundUp(x, localSize_[0]), roundUp(y, localSize_[1]));
+        cl::Event event;
+        impl.queue.enqueueNDRangeKernel(kernel_, cl::NullRange, global, local, nullptr, &event);
+        impl.launches.push_back({name_, event});
+        return 0;
+    });
+}
+
+}  // namespace earthshine

@@ -1,0 +1,17 @@
+#include "compute/quirks.hpp"
+
+namespace earthshine {
+
+bool runsOnLlvmpipe(const DeviceCaps& caps) {
+    return caps.name.find("llvmpipe") != std::string::npos;
+}
+
+std::string knownUnusable(const DeviceCaps& caps) {
+    // "OpenCL C 1.1 Mesa 22.3.6": clang's OpenCL C of another name keeps the same form.
+    const std::string& version = caps.openclCVersion;
+    if (version.starts_with("OpenCL C 1.0") || version.starts_with("OpenCL C 1.1"))
+        return version + " is older than OpenCL C 1.2";
+    return {};
+}
+
+}  // namespace earthshine

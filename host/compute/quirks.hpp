@@ -1,0 +1,17 @@
+#pragma once
+// What drivers do that they should not, one place for all of it; each with the version where it was last seen.
+
+#include <string>
+
+#include "earthshine/device.hpp"
+
+namespace earthshine {
+
+/// Mesa's rusticl over its software rasteriser: calls itself a CPU with a native width of 1 or more, runs images fast.
+bool runsOnLlvmpipe(const DeviceCaps& caps);
+
+/// Why a device that opens cannot be used all the same; "" if it can.
+///   Clover (Mesa <= 24) lists devices of OpenCL C 1.1: our kernels need 1.2.
+std::string knownUnusable(const DeviceCaps& caps);
+
+}  // namespace earthshine

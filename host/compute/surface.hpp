@@ -1,0 +1,39 @@
+#pragma once
+// A surface: what a kernel's SURFACE_IN and SURFACE_OUT stand for (kernels/common/surface.clh).
+
+#include "compute/device_impl.hpp"
+#include "earthshine/image.hpp"
+#include "surface_layout.h"
+
+namespace earthshine {
+
+/// One or three numbers a pixel in the device's storage: an image of the format, or 32-bit float planes whatever the
+/// format. Shared by copies. Contents are undefined at birth.
+class Surface {
+public:
+    Surface() = default;
+    /// R32F has one number a pixel; RGBA16F and RGBA32F three (alpha is written as 1 and never read).
+    /// Throws DeviceError if the device has no room or no such format.
+    Surface(const Device& device, PixelFormat format, Extent extent);
+
+    bool empty() const { return layout_.widthPx == 0; }
+    PixelFormat format() const { return format_; }
+    Extent extent() const { return {layout_.widthPx, layout_.heightPx}; }
+    const SurfaceLayout& layout() const { return layout_; }
+    const cl::Memory& memory() const { return memory_; }
+    std::size_t sizeBytes() const { return sizeBytes_; }
+
+private:
+    PixelFormat format_ = PixelFormat::RGBA32F;
+    SurfaceLayout layout_{0, 0, 0, 0};
+    std::size_t sizeBytes_ = 0;
+    cl::Memory memory_;
+};
+
+cl::ImageFormat clImageFormat(PixelFormat format);
+
+/// Writes and reads back a small image of each format that surfaces use: drivers list formats that they then get wrong
+/// (PoCL 3.1: R16F). Throws DeviceError naming the format.
+void checkImageFormats(Device::Impl& device);
+
+}  // namespace earthshine

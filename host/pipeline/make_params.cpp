@@ -1,0 +1,30 @@
+#include "pipeline/make_params.hpp"
+
+namespace earthshine {
+
+FrameParams makeParams(const Settings& settings, const FrameGeometry& frame) {
+    constexpr float kMiddleGrey = 0.18f;  // what photographers and displays take for the middle
+    FrameParams p;
+    p.estimator = settings.estimator;
+    p.gather.cameraRays = frame.cameraRays;
+    p.gather.rsmSizePx = frame.rsmSizePx;
+    p.gather.lightCount = frame.lightCount;
+    p.gather.sampleCount = settings.sampleCount;
+    p.gather.radiusUv = settings.radiusUv;
+    p.sum.cameraRays = frame.cameraRays;
+    p.sum.rsmSizePx = frame.rsmSizePx;
+    p.sum.lightCount = frame.lightCount;
+    p.directLight.cameraRays = frame.cameraRays;
+    p.directLight.lightCount = frame.lightCount;
+    p.directLight.shadowWidthPx = frame.shadowExtent.widthPx;
+    p.directLight.shadowHeightPx = frame.shadowExtent.heightPx;
+    p.directLight.shadowBiasTexels = settings.shadowBiasTexels;
+    p.directLight.shadowSlopeBiasTexels = settings.shadowSlopeBiasTexels;
+    p.exposure.automatic = settings.autoExposure ? 1 : 0;
+    p.exposure.stops = settings.exposureStops;
+    p.exposure.middleGrey = kMiddleGrey;
+    p.toneMap.curve = settings.toneCurve == ToneCurve::Filmic ? TONE_CURVE_FILMIC : TONE_CURVE_SRGB;
+    return p;
+}
+
+}  // namespace earthshine

@@ -1,0 +1,243 @@
+#include "earthshine/pipeline.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "earthshine/error.hpp"
+#include "interop/host_transport.hpp"
+#include "pipeline/make_params.hpp"
+#include "stages/direct_light_stage.hpp"
+#include "stages/exposure_stage.hpp"
+#include "stages/frame_params.hpp"
+#include "stages/interleave_stage.hpp"
+#include "stages/modulate_stage.hpp"
+#include "stages/rsm_gather_stage.hpp"
+#include "stages/rsm_pack_stage.hpp"
+#include "stages/rsm_sum_stage.hpp"
+#include "stages/tone_map_stage.hpp"
+
+namespace earthshine {
+
+struct Pipeline::Impl {
+    explicit Impl(const Device& d)
+        : device(d),
+          transport(d),
+          rsmPack(d),
+          rsmGather(d),
+          rsmSum(d),
+          directLight(d),
+          modulate(d),
+          exposureStage(d),
+          toneMap(d),
+          interleave(d),
+          exposure(d.impl().makeBuffer(sizeof(float))) {}
+
+    Device device;
+    HostTransport transport;
+    RsmPackStage rsmPack;
+    RsmGatherStage rsmGather;
+    RsmSumStage rsmSum;
+    DirectLightStage directLight;
+    ModulateStage modulate;
+    ExposureStage exposureStage;
+    ToneMapStage toneMap;
+    InterleaveStage interleave;
+
+    FrameInputs frame;
+    FrameSurfaces inputs;
+    Extent extent;
+    Surface directIrradiance, indirectIrradiance, direct, color;
+    Surface scratch;  ///< allocated by the first read that needs it
+    cl::Buffer exposure, display, pixels, pattern;
+    int patternSize = 0;
+    FrameParams params;
+    bool hasFrame = false, hasRun = false;
+    std::vector<StageTime> times;
+
+    void allocate() {
+        if (extent == inputs.depth.extent()) return;
+        extent = inputs.depth.extent();
+        for (Surface* surface : {&directIrradiance, &indirectIrradiance, &direct, &color})
+            *surface = Surface(device, PixelFormat::RGBA32F, extent);
+        scratch = {};
+        display = device.impl().makeBuffer(4 * pixelCount());
+        pixels = device.impl().makeBuffer(16 * pixelCount());
+    }
+    std::size_t pixelCount() const { return std::size_t(extent.widthPx) * std::size_t(extent.heightPx); }
+
+    Surface& scratchSurface() {
+        if (scratch.empty()) scratch = Surface(device, PixelFormat::RGBA32F, extent);
+        return scratch;
+    }
+
+    void uploadPattern(int count) {
+        if (patternSize == count) return;
+        const std::vector<f32x4> points = makeDiskPattern(count);
+        Device::Impl& impl = device.impl();
+        pattern = impl.makeBuffer(points.size() * sizeof(f32x4));
+        impl.checked("writing the sample pattern", [&] {
+            impl.queue.enqueueWriteBuffer(pattern, CL_TRUE, 0, points.size() * sizeof(f32x4), points.data());
+            return 0;
+        });
+        patternSize = count;
+    }
+
+    // Bands of rows of about this many pairs of pixel and texel: some tenths of a second on two CPU cores.
+    void sumInBands(const std::function<void(double)>& progress) {
+        constexpr double kPairsPerLaunch = 5e8;
+        const double pairsPerRow =
+            double(extent.widthPx) * inputs.rsm.sizePx * double(inputs.rsm.sizePx) * std::max(inputs.rsm.lightCount, 1);
+        const int rows = std::clamp(int(kPairsPerLaunch / pairsPerRow) / 8 * 8, 8, std::max(extent.heightPx, 8));
+        for (int first = 0; first < extent.heightPx; first += rows) {
+            RsmSumParams band = params.sum;
+            band.firstRowPx = first;
+            rsmSum.enqueue({inputs.normalWs, inputs.depth, inputs.rsm, inputs.lights, indirectIrradiance}, band,
+                           std::min(rows, extent.heightPx - first));
+            if (progress) {
+                finish();
+                progress(double(std::min(first + rows, extent.heightPx)) / extent.heightPx);
+            }
+        }
+    }
+
+    void finish() {
+        Device::Impl& impl = device.impl();
+        impl.checked("waiting for the frame", [&] { return impl.queue.finish(); });
+    }
+
+    void collectTimes() {
+        times.clear();
+        Device::Impl& impl = device.impl();
+        for (const Launch& launch : impl.launches) {
+            auto same =
+                std::find_if(times.begin(), times.end(), [&](const StageTime& t) { return t.stage == launch.kernel; });
+            if (same == times.end()) same = times.insert(times.end(), {launch.kernel, 0.0});
+            if (!impl.options.profiling) continue;
+            impl.checked("reading stage times", [&] {
+                same->ms += 1e-6 * double(launch.event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
+                                          launch.event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+                return 0;
+            });
+        }
+        impl.launches.clear();
+    }
+
+    HostImage readBuffer(const cl::Buffer& buffer, PixelFormat format) {
+        HostImage image(format, extent);
+        Device::Impl& impl = device.impl();
+        impl.checked("reading an output", [&] {
+            impl.queue.enqueueReadBuffer(buffer, CL_TRUE, 0, image.sizeBytes(), image.data());
+            return 0;
+        });
+        impl.launches.clear();  // what reading launched is not a stage of the frame
+        return image;
+    }
+
+    HostImage readSurface(const Surface& surface) {
+        interleave.enqueue({surface, inputs.depth}, pixels);
+        return readBuffer(pixels, PixelFormat::RGBA32F);
+    }
+
+    void requireRun() const {
+        if (!hasRun) throw UsageError("pipeline: there is no output before run()");
+    }
+};
+
+Pipeline::Pipeline(const Device& device) : impl_(std::make_unique<Impl>(device)) {}
+Pipeline::~Pipeline() = default;
+Pipeline::Pipeline(Pipeline&&) noexcept = default;
+Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
+
+void Pipeline::setFrame(const FrameInputs& frame) {
+    checkInputs(frame);
+    impl_->frame = frame;
+    impl_->hasFrame = true;
+}
+
+void Pipeline::run(const Settings& settings, const std::function<void(double)>& progress) {
+    validate(settings);
+    Impl& p = *impl_;
+    if (!p.hasFrame) throw UsageError("pipeline: setFrame() comes before run()");
+    p.device.impl().launches.clear();
+
+    p.transport.enqueue(p.frame, p.inputs);
+    p.allocate();
+    p.params = makeParams(settings, {makeViewRays(p.frame.camera, p.extent), p.inputs.rsm.sizePx,
+                                     p.inputs.rsm.lightCount, p.inputs.shadowExtent});
+    if (p.device.tuning().rsmRecords && p.inputs.rsm.lightCount > 0) p.rsmPack.enqueue(p.inputs.rsm, p.inputs.lights);
+
+    p.directLight.enqueue(
+        {p.inputs.normalWs, p.inputs.depth, p.inputs.shadowDepth, p.inputs.lights, p.directIrradiance},
+        p.params.directLight);
+    if (p.params.estimator == Estimator::Sum) {
+        p.sumInBands(progress);
+    } else {
+        p.uploadPattern(p.params.gather.sampleCount);
+        p.rsmGather.enqueue(
+            {p.inputs.normalWs, p.inputs.depth, p.inputs.rsm, p.inputs.lights, p.pattern, p.indirectIrradiance},
+            p.params.gather);
+    }
+    p.modulate.enqueue(
+        {p.inputs.albedo, p.directIrradiance, p.inputs.emission.empty() ? nullptr : &p.inputs.emission, p.direct});
+    p.modulate.enqueue({p.inputs.albedo, p.indirectIrradiance, &p.direct, p.color});
+    p.exposureStage.enqueue({p.color, p.inputs.depth, p.exposure}, p.params.exposure);
+    p.toneMap.enqueue({p.color, p.exposure, p.display}, p.params.toneMap);
+
+    p.finish();
+    p.transport.release();
+    p.collectTimes();
+    p.hasRun = true;
+    if (progress) progress(1.0);
+}
+
+HostImage Pipeline::read(Output output) {
+    Impl& p = *impl_;
+    p.requireRun();
+    switch (output) {
+        case Output::DirectIrradiance:
+            return p.readSurface(p.directIrradiance);
+        case Output::IndirectIrradiance:
+            return p.readSurface(p.indirectIrradiance);
+        case Output::Direct:
+            return p.readSurface(p.direct);
+        case Output::Color:
+            return p.readSurface(p.color);
+        case Output::Display:
+            return p.readBuffer(p.display, PixelFormat::RGBA8);
+        case Output::Indirect:
+            break;
+    }
+    p.modulate.enqueue({p.inputs.albedo, p.indirectIrradiance, nullptr, p.scratchSurface()});
+    return p.readSurface(p.scratch);
+}
+
+HostImage Pipeline::toDisplay(const ImageView& radiance) {
+    Impl& p = *impl_;
+    p.requireRun();
+    if (radiance.format != PixelFormat::RGBA32F || radiance.extent != p.extent)
+        throw UsageError(fmt::format("toDisplay: takes RGBA32F of {} x {}", p.extent.widthPx, p.extent.heightPx));
+    const cl::Buffer bytes = p.device.impl().makeBuffer(4 * p.pixelCount());
+    p.transport.enqueueImage(radiance, p.scratchSurface(), 0);
+    p.toneMap.enqueue({p.scratch, p.exposure, bytes}, p.params.toneMap);
+    HostImage image = p.readBuffer(bytes, PixelFormat::RGBA8);
+    p.transport.release();
+    return image;
+}
+
+float Pipeline::exposure() const {
+    impl_->requireRun();
+    float value = 0.0f;
+    Device::Impl& impl = impl_->device.impl();
+    impl.checked("reading the exposure", [&] {
+        impl.queue.enqueueReadBuffer(impl_->exposure, CL_TRUE, 0, sizeof value, &value);
+        return 0;
+    });
+    return value;
+}
+
+std::vector<StageTime> Pipeline::stageTimes() const {
+    return impl_->times;
+}
+
+}  // namespace earthshine

@@ -1,0 +1,21 @@
+#pragma once
+// From cameras and lights to what kernels read of them: pure functions.
+
+#include <vector>
+
+#include "earthshine/frame.hpp"
+#include "light_params.h"
+#include "view_rays.h"
+
+namespace earthshine {
+
+/// The world rays of a map's texels for linear depth along -z; `extent` is the map's.
+ViewRays makeViewRays(const Camera& camera, Extent extent);
+
+/// One light for RSMs and shadow maps of the given extents.
+LightParams makeLightParams(const Light& light, Extent rsmExtent, Extent shadowExtent);
+
+/// `count` Hammersley points in the unit disk, uniform by area: (dx, dy, 1 / (count pdf), 0) with pdf = 1 / pi.
+std::vector<f32x4> makeDiskPattern(int count);
+
+}  // namespace earthshine

@@ -1,0 +1,10 @@
+#include "stages/interleave_stage.hpp"
+
+namespace earthshine {
+
+void InterleaveStage::enqueue(const Images& images, const cl::Buffer& outPixels) {
+    kernel_.set("inColor", images.color).set("inDepth", images.depth).set("outPixels", outPixels);
+    kernel_.enqueue(images.color.extent());
+}
+
+}  // namespace earthshine

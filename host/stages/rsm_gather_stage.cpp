@@ -1,0 +1,13 @@
+#include "stages/rsm_gather_stage.hpp"
+
+namespace earthshine {
+
+void RsmGatherStage::enqueue(const Images& images, const RsmGatherParams& params) {
+    kernel_.set("inNormalWs", images.normalWs).set("inDepth", images.depth);
+    setRsm(kernel_, device_, images.rsm);
+    kernel_.set("lights", images.lights).set("pattern", images.pattern).set("outIrradiance", images.outIrradiance);
+    kernel_.setParams("params", params);
+    kernel_.enqueue(images.outIrradiance.extent());
+}
+
+}  // namespace earthshine

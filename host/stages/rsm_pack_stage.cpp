@@ -1,0 +1,12 @@
+#include "stages/rsm_pack_stage.hpp"
+
+namespace earthshine {
+
+void RsmPackStage::enqueue(const RsmView& rsm, const cl::Buffer& lights) {
+    const RsmPackParams params{rsm.sizePx, rsm.lightCount, 0, 0};
+    kernel_.set("inDepth", rsm.depth).set("inNormalWs", rsm.normalWs).set("inFlux", rsm.flux);
+    kernel_.set("lights", lights).set("outRecords", rsm.records).setParams("params", params);
+    kernel_.enqueue({rsm.sizePx, rsm.sizePx * rsm.lightCount});
+}
+
+}  // namespace earthshine

@@ -1,0 +1,10 @@
+# cmake -DOUT=... -DROOT=... -DFILES=a|b|c -P embed.cmake: writes each file's text into one C++ table.
+string(REPLACE "|" ";" FILES "${FILES}")
+set(TEXT "// Made by kernels/embed.cmake.\n#include \"compute/kernel_source.hpp\"\n\nnamespace earthshine {\n\nconst KernelText kKernelTexts[] = {\n")
+foreach(FILE IN LISTS FILES)
+  file(READ ${ROOT}/${FILE} CONTENT)
+  get_filename_component(NAME ${FILE} NAME)
+  string(APPEND TEXT "    {\"${NAME}\", R\"ESCL(${CONTENT})ESCL\"},\n")
+endforeach()
+string(APPEND TEXT "    {nullptr, nullptr}};\n\n}  // namespace earthshine\n")
+file(WRITE ${OUT} "${TEXT}")

@@ -1,0 +1,61 @@
+// rsm_gather: one-bounce irradiance from a few texels of each light's RSM, in a disk around the point's own projection.
+//   E(x) = sum_lights 1/S sum_s  Phi_p(s) / pi G(p(s), x) / pdf(s)
+//   G = max(0, n_p.(x - x_p)) max(0, n.(x_p - x)) / |x - x_p|^4, with the texel a small disc (rsm.clh)
+//   Dachsbacher & Stamminger 2005, whose weights leave the pdf out. Ours: s lies in the disk of the given radius by the
+//   pattern's pdf, so the mean is that of the full sum for any sample count and any radius that covers the map; beyond
+//   the map's border is black, at no bias, since texels there have no flux.
+//   in   inNormalWs     unit
+//   in   inDepth        m; 0 on sky
+//   in   rsm            all lights' maps below one another
+//   in   lights         LightParams
+//   in   pattern        sampleCount x (dx, dy, 1 / (S pdf), -) in the unit disk
+//   out  outIrradiance  lx, >= 0, finite; 0 on sky
+//   Work 2D, one item per LANES pixels of a row, any local size; items past the edge return.
+
+#include "rsm.clh"
+#include "rsm_gather_params.h"
+
+__kernel void rsm_gather(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm),
+                         __global const LightParams* restrict lights, __global const float4* restrict pattern,
+                         SURFACE_OUT(outIrradiance), const RsmGatherParams params) {
+    Pixel px = itemPixel();
+    if (isOutside(px, outIrradianceLayout)) return;
+    vfloat3 irradiance = make3(0.0f, 0.0f, 0.0f);
+    vfloat depth = load1(inDepth, px);
+    vmask isSurface = depth > 0.0f;
+    if (!anyLane(isSurface)) {
+        store3(outIrradiance, px, irradiance);
+        return;
+    }
+    vfloat3 normalWs = load3(inNormalWs, px);
+    vfloat3 positionWs = positionFromDepth(&params.cameraRays, px.x + laneIndex(), (vint)(px.y), depth);
+    float size = (float)params.rsmSizePx;
+
+    for (int l = 0; l < params.lightCount; ++l) {
+        const LightParams light = lights[l];
+        // The disk's centre stays on the map, wherever the point is: all that a farther centre could do is miss it.
+        vfloat w = rowTimesPoint(light.wRow, positionWs);
+        vfloat scale = size / max(w, 1e-6f);
+        vmask isAhead = w > 1e-6f;
+        vfloat cx = vselect(isAhead, rowTimesPoint(light.uRow, positionWs) * scale, 0.5f * size);
+        vfloat cy = vselect(isAhead, rowTimesPoint(light.vRow, positionWs) * scale, 0.5f * size);
+        cx = min(max(cx, 0.0f), size);
+        cy = min(max(cy, 0.0f), size);
+
+        vfloat3 sum = make3(0.0f, 0.0f, 0.0f);
+        for (int s = 0; s < params.sampleCount; ++s) {
+            float4 p = pattern[s];
+            vfloat fx = floor(mad(p.x, params.radiusUv * size, cx));
+            vfloat fy = floor(mad(p.y, params.radiusUv * size, cy));
+            vmask isInside = (fx >= 0.0f) & (fx < size) & (fy >= 0.0f) & (fy < size);
+            vint x = toVint(min(max(fx, 0.0f), size - 1.0f));
+            vint y = toVint(min(max(fy, 0.0f), size - 1.0f)) + l * params.rsmSizePx;
+            RsmTexel t = rsmGather(rsm, x, y, params.rsmSizePx, &light);
+            vfloat g = texelGeometry(positionWs, normalWs, t.positionWs, t.normalWs, t.radius);
+            sum = mad3(vselect(isInside, g * p.z, 0.0f), t.flux, sum);
+        }
+        // A sample at density pdf over the disk of radius r stands for r^2 / pdf of the unit square of N x N texels.
+        irradiance = mad3((vfloat)(params.radiusUv * params.radiusUv * size * size * ES_INV_PI), sum, irradiance);
+    }
+    store3(outIrradiance, px, select3(isSurface, irradiance, make3(0.0f, 0.0f, 0.0f)));
+}

@@ -1,0 +1,25 @@
+// Parameters of rsm_gather.cl.
+#ifndef EARTHSHINE_SHARED_RSM_GATHER_PARAMS_H
+#define EARTHSHINE_SHARED_RSM_GATHER_PARAMS_H
+
+#include "dialect.h"
+#include "light_params.h"
+
+#ifndef ES_DIALECT_CL
+namespace earthshine {
+#endif
+
+typedef struct RsmGatherParams {
+    ViewRays cameraRays;
+    i32 rsmSizePx;    // side of one light's map
+    i32 lightCount;   // >= 0
+    i32 sampleCount;  // a light, [1; 4096]
+    f32 radiusUv;     // (0; 2], fraction of the map's side
+} RsmGatherParams;
+ES_ASSERT_SIZE(RsmGatherParams, 112);
+
+#ifndef ES_DIALECT_CL
+}  // namespace earthshine
+#endif
+
+#endif

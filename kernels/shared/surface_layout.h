@@ -1,0 +1,23 @@
+// How a surface lies in memory. An image needs only its extent; planes need all four.
+#ifndef EARTHSHINE_SHARED_SURFACE_LAYOUT_H
+#define EARTHSHINE_SHARED_SURFACE_LAYOUT_H
+
+#include "dialect.h"
+
+#ifndef ES_DIALECT_CL
+namespace earthshine {
+#endif
+
+typedef struct SurfaceLayout {
+    i32 widthPx;
+    i32 heightPx;
+    i32 pitch;        // floats from a row to the next: widthPx rounded up to 16, so that no lane falls off a row
+    i32 planeStride;  // floats from a channel's plane to the next
+} SurfaceLayout;
+ES_ASSERT_SIZE(SurfaceLayout, 16);
+
+#ifndef ES_DIALECT_CL
+}  // namespace earthshine
+#endif
+
+#endif

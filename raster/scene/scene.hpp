@@ -122,4 +122,8 @@ struct Scene {
     std::size_t triangleCount() const;  ///< over all instances
 };
 
+/// Fills in the bounds of every mesh, from its vertices, and of the scene: the box around the corners of every
+/// instance's box. A scene without instances gets a box of no size at the origin.
+void computeBounds(Scene& scene);
+
 }  // namespace earthshine::raster

@@ -1,0 +1,190 @@
+#include "raster/scene/gltf_nodes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
+
+namespace earthshine::raster {
+
+namespace {
+
+glm::dmat4 parentFromNode(const tinygltf::Node& node) {
+    glm::dmat4 result(1.0);
+    if (!node.matrix.empty()) {
+        for (std::size_t i = 0; i < 16; ++i) result[int(i / 4)][int(i % 4)] = node.matrix[i];
+        return result;
+    }
+    if (!node.rotation.empty()) {
+        const glm::dquat rotation(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+        result = glm::mat4_cast(glm::normalize(rotation));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!node.scale.empty()) result[axis] *= node.scale[std::size_t(axis)];
+        if (!node.translation.empty()) result[3][axis] = node.translation[std::size_t(axis)];
+    }
+    return result;
+}
+
+bool isFinite(const glm::mat4& matrix) {
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 4; ++row) {
+            if (!std::isfinite(matrix[column][row])) return false;
+        }
+    }
+    return true;
+}
+
+/// Whether the matrix keeps volumes: otherwise normals have no transform. Relative to its columns, so that no scene is
+/// too small.
+bool isInvertible(const glm::dmat4& matrix) {
+    const glm::dmat3 linear(matrix);
+    const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+    constexpr double kFlat = 1e-9;
+    return lengths > 1e-30 && std::abs(glm::determinant(linear)) > kFlat * lengths;
+}
+
+/// Place and direction without scale, shear or reflection: the z axis is kept, y is as near as it can be.
+std::optional<glm::mat4> rigid(const glm::dmat4& matrix) {
+    const auto unit = [](const glm::dvec3& v) { return v / glm::length(v); };
+    const glm::dvec3 z = unit(glm::dvec3(matrix[2]));
+    const glm::dvec3 x = unit(glm::cross(unit(glm::dvec3(matrix[1])), z));
+    const glm::dvec3 y = glm::cross(z, x);
+    const glm::mat4 result(glm::dmat4(glm::dvec4(x, 0.0), glm::dvec4(y, 0.0), glm::dvec4(z, 0.0), matrix[3]));
+    if (!isFinite(result)) return std::nullopt;
+    return result;
+}
+
+SceneCamera cameraOf(const tinygltf::Camera& from) {
+    SceneCamera to;
+    to.name = from.name;
+    to.perspective = from.type == "perspective";
+    if (to.perspective) {
+        to.verticalFov = float(from.perspective.yfov);
+        to.aspect = float(from.perspective.aspectRatio);
+        to.nearM = float(from.perspective.znear);
+        to.farM = float(from.perspective.zfar);
+    } else {
+        to.halfHeightM = float(std::abs(from.orthographic.ymag));
+        to.aspect = float(std::abs(from.orthographic.xmag / from.orthographic.ymag));
+        to.nearM = float(from.orthographic.znear);
+        to.farM = float(from.orthographic.zfar);
+    }
+    return to;
+}
+
+SceneLight lightOf(const tinygltf::Light& from) {
+    SceneLight to;
+    to.name = from.name;
+    to.type = from.type == "point"  ? SceneLightType::Point
+              : from.type == "spot" ? SceneLightType::Spot
+                                    : SceneLightType::Directional;
+    for (int i = 0; i < 3; ++i) {
+        to.intensity[i] = float((from.color.empty() ? 1.0 : from.color[std::size_t(i)]) * from.intensity);
+    }
+    to.outerConeAngle = float(from.spot.outerConeAngle);
+    to.innerConeAngle = std::min(float(from.spot.innerConeAngle), to.outerConeAngle);
+    to.rangeM = float(from.range);
+    return to;
+}
+
+class Placer {
+public:
+    Placer(const GltfContext& context, GltfMeshes& meshes) : context_(context), meshes_(meshes) {}
+
+    void placeTree(int root) {
+        struct Pending {
+            int node;
+            glm::dmat4 worldFromParent;
+        };
+        std::vector<Pending> pending = {{root, glm::dmat4(1.0)}};  // a list, not recursion: any depth is fine
+        while (!pending.empty()) {
+            const Pending next = pending.back();
+            pending.pop_back();
+            const tinygltf::Node& node = context_.model.nodes[std::size_t(next.node)];
+            const glm::dmat4 worldFromNode = next.worldFromParent * parentFromNode(node);
+            placeNode(node, worldFromNode, fmt::format("nodes[{}]", next.node));
+            for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
+                pending.push_back({*child, worldFromNode});
+            }
+        }
+    }
+
+private:
+    void placeNode(const tinygltf::Node& node, const glm::dmat4& worldFromNode, const std::string& place) {
+        const glm::mat4 world(worldFromNode);
+        if (!isFinite(world)) context_.file.fail(place, "its world transform is beyond what 32-bit floats hold");
+        if (node.mesh >= 0) placeMesh(node, worldFromNode, place);
+        const auto light = node.extensions.find("KHR_lights_punctual");
+        const bool hasLight = light != node.extensions.end() && light->second.Has("light");
+        if (node.camera < 0 && !hasLight) return;
+        const std::optional<glm::mat4> worldFromThis = rigid(worldFromNode);
+        if (!worldFromThis) {
+            context_.note(place + ": its scale leaves its camera or light no direction, and it is left out");
+            return;
+        }
+        if (node.camera >= 0) {
+            SceneCamera camera = cameraOf(context_.model.cameras[std::size_t(node.camera)]);
+            if (camera.name.empty()) camera.name = node.name;
+            camera.worldFromView = *worldFromThis;
+            context_.scene.cameras.push_back(std::move(camera));
+        }
+        if (hasLight) {
+            const int index = light->second.Get("light").GetNumberAsInt();
+            SceneLight placed = lightOf(context_.model.lights[std::size_t(index)]);
+            for (int i = 0; i < 3; ++i) {
+                if (!std::isfinite(placed.intensity[i])) {
+                    context_.file.fail(fmt::format("extensions.KHR_lights_punctual.lights[{}]", index),
+                                       "its intensity is beyond what a 32-bit float holds");
+                }
+            }
+            if (placed.name.empty()) placed.name = node.name;
+            placed.worldFromLight = *worldFromThis;
+            context_.scene.lights.push_back(std::move(placed));
+        }
+    }
+
+    void placeMesh(const tinygltf::Node& node, const glm::dmat4& worldFromNode, const std::string& place) {
+        if (!isInvertible(worldFromNode)) {
+            context_.note(place + ": its scale leaves no volume, and its mesh is not drawn");
+            return;
+        }
+        if (node.skin >= 0) context_.note(place + ": its skin is drawn in the bind pose");
+        for (const int mesh : meshes_.meshesOf(node.mesh, node.weights)) {
+            context_.scene.instances.push_back({mesh, glm::mat4(worldFromNode)});
+        }
+    }
+
+    const GltfContext& context_;
+    GltfMeshes& meshes_;
+};
+
+}  // namespace
+
+void placeNodes(const GltfContext& context, GltfMeshes& meshes) {
+    const tinygltf::Model& model = context.model;
+    std::vector<int> roots;
+    if (!model.scenes.empty()) {
+        const int scene = std::max(model.defaultScene, 0);
+        roots = model.scenes[std::size_t(scene)].nodes;
+        context.scene.name = model.scenes[std::size_t(scene)].name;
+        if (model.scenes.size() > 1)
+            context.note(fmt::format("scenes[{}] is drawn, of {} scenes", scene, model.scenes.size()));
+    } else {
+        std::vector<bool> isChild(model.nodes.size(), false);
+        for (const tinygltf::Node& node : model.nodes) {
+            for (const int child : node.children) isChild[std::size_t(child)] = true;
+        }
+        for (std::size_t i = 0; i < isChild.size(); ++i) {
+            if (!isChild[i]) roots.push_back(int(i));
+        }
+    }
+    Placer placer(context, meshes);
+    for (const int root : roots) placer.placeTree(root);
+}
+
+}  // namespace earthshine::raster

@@ -1,0 +1,58 @@
+#include "reference/device_variants.hpp"
+
+#include <cctype>
+#include <cstdlib>
+
+namespace earthshine::reference {
+
+namespace {
+
+std::string testName(const DeviceCaps& caps) {
+    std::string name;
+    for (char c : caps.platformName.substr(0, 12) + std::to_string(caps.index))
+        name += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+    return name;
+}
+
+std::vector<DeviceCaps> testedDevices() {
+    std::vector<DeviceCaps> devices;
+    const char* wanted = std::getenv("EARTHSHINE_TEST_DEVICES");
+    for (const DeviceCaps& caps : listDevices()) {
+        if (!caps.unusable.empty()) continue;
+        if (wanted && (caps.platformName + caps.name).find(wanted) == std::string::npos) continue;
+        devices.push_back(caps);
+    }
+    return devices;
+}
+
+}  // namespace
+
+std::vector<Variant> allVariants() {
+    std::vector<Variant> variants;
+    for (const DeviceCaps& caps : testedDevices()) {
+        for (int lanes : {1, 4, 8, 16}) {
+            for (const char* storage : {"image", "planar"}) {
+                if (!caps.images && std::string(storage) == "image") continue;
+                Variant v{caps, {}, testName(caps) + "_lanes" + std::to_string(lanes) + "_" + storage};
+                v.options.lanes = lanes;
+                v.options.storage = storage;
+                variants.push_back(v);
+            }
+        }
+        // The naive port: no records.
+        Variant v{caps, {}, testName(caps) + "_naive"};
+        v.options.lanes = 1;
+        v.options.storage = caps.images ? "image" : "planar";
+        v.options.rsmRecords = 0;
+        variants.push_back(v);
+    }
+    return variants;
+}
+
+std::vector<Variant> defaultVariants() {
+    std::vector<Variant> variants;
+    for (const DeviceCaps& caps : testedDevices()) variants.push_back({caps, {}, testName(caps)});
+    return variants;
+}
+
+}  // namespace earthshine::reference

@@ -1,0 +1,24 @@
+#pragma once
+// Every way that a kernel can be built here: each usable device x LANES x storage. A test that runs through these
+// proves that width, storage and driver change nothing but rounding.
+
+#include <string>
+#include <vector>
+
+#include "earthshine/device.hpp"
+
+namespace earthshine::reference {
+
+struct Variant {
+    DeviceCaps caps;
+    DeviceOptions options;
+    std::string name;  ///< fit for a test's name: "pocl_lanes16_planar"
+};
+
+/// Devices whose platform or name holds the text of $EARTHSHINE_TEST_DEVICES, or all usable ones without it.
+std::vector<Variant> allVariants();
+
+/// One variant a device: its own defaults.
+std::vector<Variant> defaultVariants();
+
+}  // namespace earthshine::reference

@@ -1,0 +1,190 @@
+#include "reference/frame_reference.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+namespace earthshine::reference {
+
+namespace {
+
+glm::dvec3 texel3(const HostImage& image, int x, int y) {
+    const float* p = image.pixel(x, y);
+    return {p[0], p[1], p[2]};
+}
+
+glm::dvec3 eyeOf(const Camera& camera) {
+    return glm::dvec3(glm::inverse(glm::dmat4(camera.viewFromWorld))[3]);
+}
+glm::dvec3 backwardsOf(const Camera& camera) {
+    return glm::dvec3(glm::inverse(glm::dmat4(camera.viewFromWorld))[2]);
+}
+
+// uv of a point in a camera's map; false if it is behind a perspective camera.
+bool project(const Camera& camera, const glm::dvec3& position, glm::dvec2& uv) {
+    const glm::dvec4 clip =
+        glm::dmat4(camera.clipFromView) * (glm::dmat4(camera.viewFromWorld) * glm::dvec4(position, 1.0));
+    if (clip.w <= 1e-6) return false;
+    uv = {0.5 * (clip.x / clip.w + 1.0), 0.5 * (1.0 - clip.y / clip.w)};
+    return true;
+}
+
+// Area of one texel across the ray at a distance along the axis: the area, or the solid angle times distance squared.
+double texelAreaAcross(const Light& light, const glm::dvec3& position, double linearDepth, Extent extent) {
+    const double w = 2.0 / double(light.camera.clipFromView[0][0]) / extent.widthPx;
+    const double h = 2.0 / double(light.camera.clipFromView[1][1]) / extent.heightPx;
+    if (light.type == LightType::Directional) return w * h;
+    const double distance = glm::length(position - eyeOf(light.camera));
+    const double cosine = linearDepth / distance;
+    const double solidAngle = w * h * cosine * cosine * cosine;
+    return solidAngle * distance * distance;
+}
+
+}  // namespace
+
+glm::dvec3 unproject(const Camera& camera, glm::dvec2 uv, double linearDepth) {
+    const glm::dmat4 viewFromClip = glm::inverse(glm::dmat4(camera.clipFromView));
+    const glm::dmat4 worldFromView = glm::inverse(glm::dmat4(camera.viewFromWorld));
+    // Two points of the texel's line, then the one at the depth asked for.
+    const glm::dvec2 ndc(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y);
+    glm::dvec4 a = viewFromClip * glm::dvec4(ndc, -0.9, 1.0), b = viewFromClip * glm::dvec4(ndc, 0.9, 1.0);
+    a /= a.w;
+    b /= b.w;
+    const double t = (-linearDepth - a.z) / (b.z - a.z);
+    return glm::dvec3(worldFromView * (a + t * (b - a)));
+}
+
+std::vector<SurfacePoint> surfacePoints(const Camera& camera, const ImageView& normalWs, const ImageView& depth) {
+    const HostImage normals = toFloat(normalWs), depths = toFloat(depth);
+    const Extent e = depth.extent;
+    std::vector<SurfacePoint> points;
+    for (int y = 0; y < e.heightPx; ++y) {
+        for (int x = 0; x < e.widthPx; ++x) {
+            SurfacePoint point;
+            const double z = *depths.pixel(x, y);
+            point.isValid = z > 0.0;
+            if (point.isValid) {
+                point.position = unproject(camera, {(x + 0.5) / e.widthPx, (y + 0.5) / e.heightPx}, z);
+                point.normal = texel3(normals, x, y);
+            }
+            points.push_back(point);
+        }
+    }
+    return points;
+}
+
+std::vector<Vpl> vpls(const Light& light, const LightMaps& maps) {
+    const std::vector<SurfacePoint> points = surfacePoints(light.camera, maps.rsmNormalWs, maps.rsmDepth);
+    const HostImage flux = toFloat(maps.rsmFlux), depth = toFloat(maps.rsmDepth);
+    const Extent e = maps.rsmDepth.extent;
+    std::vector<Vpl> result(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (!points[i].isValid) continue;
+        const int x = int(i) % e.widthPx, y = int(i) / e.widthPx;
+        result[i].position = points[i].position;
+        result[i].normal = points[i].normal;
+        result[i].flux = glm::max(texel3(flux, x, y), glm::dvec3(0.0));
+        const glm::dvec3 towards = light.type == LightType::Directional
+                                       ? backwardsOf(light.camera)
+                                       : glm::normalize(eyeOf(light.camera) - points[i].position);
+        const double across = texelAreaAcross(light, points[i].position, *depth.pixel(x, y), e);
+        result[i].radius = std::sqrt(across / std::numbers::pi / std::max(glm::dot(points[i].normal, towards), 0.05));
+    }
+    return result;
+}
+
+double texelGeometry(const SurfacePoint& x, const Vpl& p) {
+    const glm::dvec3 d = p.position - x.position;
+    const double d2 = glm::dot(d, d);
+    const double cosines = std::max(glm::dot(x.normal, d), 0.0) * std::max(-glm::dot(p.normal, d), 0.0);
+    return cosines == 0.0 ? 0.0 : cosines / (d2 * (d2 + p.radius * p.radius));
+}
+
+glm::dvec3 rsmSum(const SurfacePoint& x, const std::vector<Vpl>& texels) {
+    glm::dvec3 sum(0.0);
+    if (!x.isValid) return sum;
+    for (const Vpl& p : texels) sum += p.flux * texelGeometry(x, p);
+    return sum / std::numbers::pi;
+}
+
+glm::dvec3 rsmDisk(const SurfacePoint& x, const std::vector<Vpl>& texels, const Light& light, int size, int count,
+                   double radiusUv) {
+    glm::dvec3 sum(0.0);
+    if (!x.isValid) return sum;
+    glm::dvec2 centre(0.5);
+    project(light.camera, x.position, centre);
+    centre = glm::clamp(centre, glm::dvec2(0.0), glm::dvec2(1.0));
+    const double pdf = 1.0 / (std::numbers::pi * radiusUv * radiusUv);  // over the unit square of the map
+    for (int i = 0; i < count; ++i) {
+        double mirrored = 0.0, place = 0.5;
+        for (int bits = i; bits != 0; bits /= 2, place /= 2) mirrored += place * (bits % 2);
+        const double r = radiusUv * std::sqrt((i + 0.5) / count), angle = 2.0 * std::numbers::pi * mirrored;
+        const int px = int(std::floor((centre.x + r * std::cos(angle)) * size));
+        const int py = int(std::floor((centre.y + r * std::sin(angle)) * size));
+        if (px < 0 || py < 0 || px >= size || py >= size) continue;  // black beyond the border
+        const Vpl& p = texels[std::size_t(py) * std::size_t(size) + std::size_t(px)];
+        // The sum over texels is size^2 times the mean over the unit square.
+        sum += p.flux * texelGeometry(x, p) * double(size) * double(size) / (pdf * count);
+    }
+    return sum / std::numbers::pi;
+}
+
+glm::dvec3 directLight(const SurfacePoint& x, const Light& light, const ImageView& shadowDepth, double biasTexels,
+                       double slopeBiasTexels) {
+    if (!x.isValid) return glm::dvec3(0.0);
+    const HostImage shadow = toFloat(shadowDepth);
+    const Extent e = shadowDepth.extent;
+    const double depth = -(glm::dmat4(light.camera.viewFromWorld) * glm::dvec4(x.position, 1.0)).z;
+    glm::dvec3 towards = backwardsOf(light.camera);
+    double incident = 1.0;
+    double texel = std::max(2.0 / double(light.camera.clipFromView[0][0]) / e.widthPx,
+                            2.0 / double(light.camera.clipFromView[1][1]) / e.heightPx);
+    if (light.type == LightType::Spot) {
+        const glm::dvec3 d = eyeOf(light.camera) - x.position;
+        const double distance = glm::length(d);
+        const double cosAxis = glm::dot(d, towards) / distance;
+        towards = d / distance;
+        const double inner = std::cos(double(light.innerConeAngle)), outer = std::cos(double(light.outerConeAngle));
+        const double cone = std::clamp((cosAxis - outer) / std::max(inner - outer, 1e-3), 0.0, 1.0);
+        const double range =
+            light.rangeM > 0.0f ? std::clamp(1.0 - std::pow(distance / double(light.rangeM), 4.0), 0.0, 1.0) : 1.0;
+        incident = cone * cone * range / (distance * distance);
+        texel *= depth;
+    }
+    const double cosine = glm::dot(x.normal, towards);
+    glm::dvec2 uv;
+    if (project(light.camera, x.position, uv)) {
+        const int px = int(std::floor(uv.x * e.widthPx)), py = int(std::floor(uv.y * e.heightPx));
+        if (px >= 0 && py >= 0 && px < e.widthPx && py < e.heightPx) {
+            const double slope =
+                std::min(std::sqrt(std::max(1.0 - cosine * cosine, 0.0)) / std::max(cosine, 0.02), 20.0);
+            const double occluder = *shadow.pixel(px, py);
+            if (occluder > 0.0 && depth > occluder + texel * (biasTexels + slopeBiasTexels * slope))
+                return glm::dvec3(0.0);
+        }
+    }
+    return glm::dvec3(light.intensity) * incident * std::max(cosine, 0.0);
+}
+
+double automaticExposure(const std::vector<glm::dvec3>& radiance, double stops) {
+    double sum = 0.0, count = 0.0;
+    for (const glm::dvec3& c : radiance) {
+        const double l = 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+        if (l <= 1e-12) continue;
+        sum += std::log(l);
+        count += 1.0;
+    }
+    return std::exp2(stops) * (count > 0.0 ? 0.18 / std::exp(sum / count) : 1.0);
+}
+
+int displayByte(double x, bool filmic) {
+    x = std::max(x, 0.0);
+    if (filmic) x = x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
+    x = std::min(x, 1.0);
+    const double encoded = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
+    return int(encoded * 255.0 + 0.5);
+}
+
+}  // namespace earthshine::reference

@@ -1,0 +1,58 @@
+#pragma once
+// The stages again, in plain scalar doubles and straight from the equations: nothing here is shared with the kernels or
+// with the host code that feeds them (positions come from inverse matrices, not from ViewRays).
+
+#include <vector>
+
+#include <glm/matrix.hpp>
+#include <glm/vec3.hpp>
+
+#include "earthshine/frame.hpp"
+
+namespace earthshine::reference {
+
+/// A point of a surface: of the camera's G-buffer or of an RSM.
+struct SurfacePoint {
+    bool isValid = false;
+    glm::dvec3 position{0.0};
+    glm::dvec3 normal{0.0};
+};
+
+/// One RSM texel: a small Lambertian disc.
+struct Vpl {
+    glm::dvec3 position{0.0};
+    glm::dvec3 normal{0.0};
+    glm::dvec3 flux{0.0};  ///< lm
+    double radius = 0.0;   ///< m, sqrt(area / pi)
+};
+
+/// Where uv and linear depth of a camera's map lie in the world.
+glm::dvec3 unproject(const Camera& camera, glm::dvec2 uv, double linearDepth);
+
+/// The texels of a G-buffer (normal RGBA16F, depth R32F), row by row.
+std::vector<SurfacePoint> surfacePoints(const Camera& camera, const ImageView& normalWs, const ImageView& depth);
+
+/// The texels of one light's RSM, row by row; flux 0 where the light meets nothing.
+std::vector<Vpl> vpls(const Light& light, const LightMaps& maps);
+
+/// G(p, x) of rsm_gather.cl: max(0, n_p.d) max(0, n.d) / (d^2 (d^2 + r^2)).
+double texelGeometry(const SurfacePoint& x, const Vpl& p);
+
+/// sum_p Phi_p / pi G(p, x).
+glm::dvec3 rsmSum(const SurfacePoint& x, const std::vector<Vpl>& texels);
+
+/// The disk estimator with `count` Hammersley points around the projection of x, for an RSM of side `size`.
+glm::dvec3 rsmDisk(const SurfacePoint& x, const std::vector<Vpl>& texels, const Light& light, int size, int count,
+                   double radiusUv);
+
+/// Direct irradiance of one light behind its shadow map.
+glm::dvec3 directLight(const SurfacePoint& x, const Light& light, const ImageView& shadowDepth, double biasTexels,
+                       double slopeBiasTexels);
+
+/// 2^stops x 0.18 / exp(mean ln L) over the pixels given that are brighter than 1e-12.
+double automaticExposure(const std::vector<glm::dvec3>& radiance, double stops);
+
+/// The byte that tone_map.cl writes for a display-linear value.
+int displayByte(double value, bool filmic);
+
+}  // namespace earthshine::reference

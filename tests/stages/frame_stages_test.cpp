@@ -1,0 +1,94 @@
+// Every stage against its reference in doubles, at every width and storage, on every device here.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "earthshine/pipeline.hpp"
+#include "reference/device_variants.hpp"
+#include "reference/frame_reference.hpp"
+#include "reference/synthetic_frame.hpp"
+
+namespace earthshine {
+namespace {
+
+using reference::SurfacePoint;
+using reference::Vpl;
+
+class FrameStages : public testing::TestWithParam<reference::Variant> {};
+
+// Float arithmetic over a few hundred terms, and a record's normal of 16 bits and radius of 11 bits: 2e-3 of a value,
+// or of the frame's mean where a value is a difference of large terms.
+constexpr double kRelative = 2e-3;
+
+void expectClose(const HostImage& actual, const std::vector<glm::dvec3>& expected,
+                 const std::vector<SurfacePoint>& points, double relative) {
+    double mean = 0.0;
+    for (const glm::dvec3& e : expected) mean += (e.x + e.y + e.z) / 3.0 / double(expected.size());
+    ASSERT_GT(mean, 0.0);
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        const int x = int(i) % actual.extent().widthPx, y = int(i) / actual.extent().widthPx;
+        const float* a = actual.pixel(x, y);
+        for (int c = 0; c < 3; ++c)
+            ASSERT_NEAR(a[c], expected[i][c], relative * (std::fabs(expected[i][c]) + mean))
+                << x << ", " << y << ": channel " << c;
+        ASSERT_EQ(a[3], points[i].isValid ? 1.0f : 0.0f) << x << ", " << y;
+    }
+}
+
+struct Expected {
+    std::vector<SurfacePoint> points;
+    std::vector<glm::dvec3> direct, sum, disk;
+};
+
+Expected expectedOf(const FrameImages& images, const Settings& settings) {
+    const FrameInputs frame = images.inputs();
+    Expected e;
+    e.points = reference::surfacePoints(frame.camera, frame.gbuffer.normalWs, frame.gbuffer.depth);
+    e.direct.resize(e.points.size());
+    e.sum.resize(e.points.size());
+    e.disk.resize(e.points.size());
+    for (std::size_t l = 0; l < frame.lights.size(); ++l) {
+        const std::vector<Vpl> texels = reference::vpls(frame.lights[l], frame.lightMaps[l]);
+        const int size = frame.lightMaps[l].rsmDepth.extent.widthPx;
+        for (std::size_t i = 0; i < e.points.size(); ++i) {
+            e.direct[i] +=
+                reference::directLight(e.points[i], frame.lights[l], frame.lightMaps[l].shadowDepth,
+                                       double(settings.shadowBiasTexels), double(settings.shadowSlopeBiasTexels));
+            e.sum[i] += reference::rsmSum(e.points[i], texels);
+            e.disk[i] += reference::rsmDisk(e.points[i], texels, frame.lights[l], size, settings.sampleCount,
+                                            double(settings.radiusUv));
+        }
+    }
+    return e;
+}
+
+TEST_P(FrameStages, AgreeWithTheReference) {
+    Pipeline pipeline{Device(GetParam().caps, GetParam().options)};
+    for (const Extent extent : {Extent{37, 11}, Extent{1, 1}, Extent{7, 3}}) {
+        SCOPED_TRACE(testing::Message() << extent.widthPx << " x " << extent.heightPx);
+        reference::SyntheticOptions options;
+        options.extent = extent;
+        if (extent.widthPx == 1) options.skyFraction = 0.0;
+        const FrameImages images = reference::makeSyntheticFrame(options);
+        Settings settings;
+        settings.sampleCount = 13;
+        settings.radiusUv = 0.4f;
+        const Expected expected = expectedOf(images, settings);
+        pipeline.setFrame(images.inputs());
+
+        pipeline.run(settings);
+        expectClose(pipeline.read(Output::DirectIrradiance), expected.direct, expected.points, kRelative);
+        expectClose(pipeline.read(Output::IndirectIrradiance), expected.disk, expected.points, kRelative);
+
+        settings.estimator = Estimator::Sum;
+        pipeline.run(settings);
+        expectClose(pipeline.read(Output::IndirectIrradiance), expected.sum, expected.points, kRelative);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FrameStages, testing::ValuesIn(reference::allVariants()),
+                         [](const auto& variant) { return variant.param.name; });
+
+}  // namespace
+}  // namespace earthshine

@@ -1,5 +1,7 @@
 // What a surface is made of at this fragment: the diffuse part of glTF's metallic-roughness material.
 
+#include "safe_normalize.glsl"
+
 layout(std140) uniform MaterialBlock {
     vec4 baseColor;      // linear
     vec4 emission;       // cd/m^2
@@ -23,11 +25,6 @@ in vec4 vertexColor;
 
 vec2 textureUv(int slot) {
     return (uvFromUv[slot] * vec3(texCoords[slot] == 0 ? uv0 : uv1, 1.0)).xy;
-}
-
-// A degenerate frame (a zero normal in the file, a flattened instance) gives 0, never NaN.
-vec3 safeNormalize(vec3 v) {
-    return v * inversesqrt(max(dot(v, v), 1e-30));
 }
 
 vec4 surfaceColor() {

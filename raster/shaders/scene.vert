@@ -2,6 +2,8 @@
 // The vertices of every pass. All passes draw upside down (the y row of clipFromView is negated by who sets it), so
 // that row 0 of a texture is the top of the picture.
 
+#include "safe_normalize.glsl"
+
 layout(std140) uniform InstanceBlock {
     mat4 viewFromObject;          // made in double precision: no large world coordinates here
     mat4 previousViewFromObject;  // previous camera, previous placement
@@ -35,8 +37,8 @@ void main() {
     gl_Position = clipFromView * inView;
 
     positionVs = inView.xyz;
-    normalWs = normalize(mat3(normalWsFromObject) * normalOs);
-    tangentWs = vec4(normalize(mat3(worldFromObject) * tangentOs.xyz), tangentOs.w * normalWsFromObject[3][3]);
+    normalWs = safeNormalize(mat3(normalWsFromObject) * normalOs);
+    tangentWs = vec4(safeNormalize(mat3(worldFromObject) * tangentOs.xyz), tangentOs.w * normalWsFromObject[3][3]);
     uv0 = uv0In;
     uv1 = uv1In;
     vertexColor = colorIn;

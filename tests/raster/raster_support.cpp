@@ -75,6 +75,15 @@ Material diffuse(const glm::vec3& albedo) {
     return material;
 }
 
+Scene quadScene(const Material& material, const glm::mat4& worldFromObject) {
+    Scene scene;
+    scene.name = "quad.gltf";
+    scene.materials = {material};
+    scene.meshes = {unitQuad(0)};
+    scene.instances = {{0, worldFromObject}};
+    return scene;
+}
+
 Texture nearestTexture(int widthPx, int heightPx, std::vector<std::uint8_t> rgba8) {
     Texture texture;
     texture.name = "texture";

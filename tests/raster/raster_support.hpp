@@ -21,6 +21,9 @@ Mesh unitBox(int material, bool inwards = false);
 /// A Lambertian material of one colour.
 Material diffuse(const glm::vec3& albedo);
 
+/// One unit quad of one material, placed.
+Scene quadScene(const Material& material, const glm::mat4& worldFromObject = glm::mat4(1));
+
 /// 8-bit RGBA texels, nearest filtering, no mipmaps.
 Texture nearestTexture(int widthPx, int heightPx, std::vector<std::uint8_t> rgba8);
 

@@ -48,7 +48,7 @@ HostImage contactSheet(std::span<const Panel> panels, int columns) {
     const Extent extent = panels[0].image.extent;
     for (const Panel& panel : panels) checkRgba8(panel.image, extent, "contactSheet");
 
-    const int scale = std::clamp(extent.widthPx / 400, 1, 8);  // text of about a fortieth of the panel's height
+    const int scale = std::clamp(extent.widthPx / 320, 1, 8);  // text of about a fortieth of the panel's height
     const int gutter = 4 * scale, labelHeight = (kGlyphHeightPx + 4) * scale;
     const int rows = (int(panels.size()) + columns - 1) / columns;
     HostImage sheet(PixelFormat::RGBA8, {columns * (extent.widthPx + gutter) + gutter,

@@ -1,0 +1,12 @@
+#pragma once
+// The subcommands. Each adds its name, its options and what it does; main.cpp knows nothing else of them.
+
+#include "cli/options.hpp"
+
+namespace earthshine::cli {
+
+void addDevices(Options& program);
+void addRender(Options& program);
+void addIndirect(Options& program);
+
+}  // namespace earthshine::cli

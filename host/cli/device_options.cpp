@@ -1,0 +1,45 @@
+#include "cli/device_options.hpp"
+
+#include <fmt/format.h>
+
+#include "earthshine/log.hpp"
+
+namespace earthshine::cli {
+
+void addDeviceOptions(Options& options, DeviceArguments& arguments) {
+    DeviceOptions& o = arguments.options;
+    options.group("OpenCL device");
+    options.text("--device", "N|NAME", arguments.spec,
+                 "number or part of the name, see `earthshine devices` [$EARTHSHINE_DEVICE, else the first usable GPU, "
+                 "else CPU]");
+    options.option("--lanes", "1|4|8|16", "", "pixels a work-item computes [the tuning table's]",
+                   [&o](const std::string& text) {
+                       static constexpr const char* kNames[] = {"1", "4", "8", "16"};
+                       o.lanes = std::stoi(kNames[parseChoice(text, kNames)]);
+                   });
+    options.option("--storage", "image|planar", "", "how surfaces are kept [the tuning table's]",
+                   [&o](const std::string& text) {
+                       static constexpr const char* kNames[] = {"image", "planar"};
+                       o.storage = kNames[parseChoice(text, kNames)];
+                   });
+    options.option("--rsm-records", "on|off", "",
+                   "gather from packed texels, not from the RSM's images [the tuning table's]",
+                   [&o](const std::string& text) {
+                       static constexpr const char* kNames[] = {"off", "on"};
+                       o.rsmRecords = parseChoice(text, kNames);
+                   });
+    options.option("--local-size", "WxH", "", "work-items a group [the tuning table's]", [&o](const std::string& text) {
+        const Extent size = parseExtent(text, 4096);
+        o.localSizePx[0] = size.widthPx;
+        o.localSizePx[1] = size.heightPx;
+    });
+}
+
+ChosenDevice chooseDevice(const DeviceArguments& arguments) {
+    std::string why;
+    const DeviceCaps caps = selectDevice(arguments.spec, &why);
+    log(LogLevel::Info, fmt::format("device {}: {} ({}), {}", caps.index, caps.name, caps.platformName, why));
+    return {Device(caps, arguments.options), why};
+}
+
+}  // namespace earthshine::cli

@@ -1,0 +1,79 @@
+#include "cli/frame_timing.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include <fmt/format.h>
+
+namespace earthshine::cli {
+
+namespace {
+
+using Named = std::vector<std::pair<std::string, Series>>;
+
+Series& find(Named& all, const std::string& name) {
+    for (auto& [key, series] : all)
+        if (key == name) return series;
+    return all.emplace_back(name, Series{}).second;
+}
+
+std::string row(const std::string& name, const Series& series) {
+    return fmt::format("{:<24}{:>11.3f}{:>11.3f}{:>11.3f}\n", name, series.median(), series.min(), series.max());
+}
+
+long long nowNs() {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+}  // namespace
+
+double Series::median() const {
+    if (ms.empty()) return 0.0;
+    std::vector<double> sorted = ms;
+    std::sort(sorted.begin(), sorted.end());
+    return 0.5 * (sorted[(sorted.size() - 1) / 2] + sorted[sorted.size() / 2]);
+}
+
+double Series::min() const {
+    return ms.empty() ? 0.0 : *std::min_element(ms.begin(), ms.end());
+}
+
+double Series::max() const {
+    return ms.empty() ? 0.0 : *std::max_element(ms.begin(), ms.end());
+}
+
+void FrameTiming::addStages(const std::vector<StageTime>& times) {
+    double sum = 0.0;
+    for (const StageTime& time : times) {
+        find(stages_, time.stage).ms.push_back(time.ms);
+        sum += time.ms;
+    }
+    deviceTotal_.ms.push_back(sum);
+}
+
+void FrameTiming::addStep(const std::string& step, double ms) {
+    find(steps_, step).ms.push_back(ms);
+}
+
+void FrameTiming::clear() {
+    *this = {};
+}
+
+std::string FrameTiming::table() const {
+    std::string text =
+        fmt::format("{:<24}{:>11}{:>11}{:>11}\n", "stage (on the device)", "median ms", "min ms", "max ms");
+    for (const auto& [name, series] : stages_) text += row(name, series);
+    text += row("all stages", deviceTotal_);
+    text += fmt::format("\n{:<24}\n", "step (wall clock)");
+    for (const auto& [name, series] : steps_) text += row(name, series);
+    return text;
+}
+
+Stopwatch::Stopwatch() : startNs_(nowNs()) {}
+
+double Stopwatch::ms() const {
+    return 1e-6 * double(nowNs() - startNs_);
+}
+
+}  // namespace earthshine::cli

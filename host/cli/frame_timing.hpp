@@ -1,0 +1,52 @@
+#pragma once
+// How long the parts of a frame took, over many frames.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "earthshine/pipeline.hpp"
+
+namespace earthshine::cli {
+
+/// Milliseconds of one thing, once a frame.
+struct Series {
+    std::vector<double> ms;
+
+    double median() const;  ///< 0 if there are none; of an even number the mean of the two in the middle
+    double min() const;
+    double max() const;
+};
+
+/// The stages of a frame (time on the device) and the steps around them (wall clock), in the order first heard of.
+class FrameTiming {
+public:
+    void addStages(const std::vector<StageTime>& times);  ///< also their sum, as deviceTotal
+    void addStep(const std::string& step, double ms);
+
+    /// Forgets all so far: the first of several frames compiles and allocates.
+    void clear();
+
+    const std::vector<std::pair<std::string, Series>>& stages() const { return stages_; }
+    const std::vector<std::pair<std::string, Series>>& steps() const { return steps_; }
+    const Series& deviceTotal() const { return deviceTotal_; }
+
+    /// A table for people: a line a stage, then the sum, then the steps.
+    std::string table() const;
+
+private:
+    std::vector<std::pair<std::string, Series>> stages_, steps_;
+    Series deviceTotal_;
+};
+
+/// Milliseconds since it was made.
+class Stopwatch {
+public:
+    Stopwatch();
+    double ms() const;
+
+private:
+    long long startNs_;
+};
+
+}  // namespace earthshine::cli

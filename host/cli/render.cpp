@@ -1,0 +1,161 @@
+// `earthshine render`: a glTF scene through both halves, OpenGL and OpenCL, to pictures.
+
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.hpp"
+#include "cli/console.hpp"
+#include "cli/device_options.hpp"
+#include "cli/frame_files.hpp"
+#include "cli/raster_settings.hpp"
+#include "cli/report.hpp"
+#include "earthshine/log.hpp"
+#include "image/inputs_folder.hpp"
+#include "image/json_text.hpp"
+#include "raster/camera_fit.hpp"
+#include "raster/gl/gl_context.hpp"
+#include "raster/scene/gltf_loader.hpp"
+#include "raster/scene_renderer.hpp"
+
+namespace earthshine::cli {
+
+namespace {
+
+constexpr const char* kTransportNames[] = {"auto", "host"};
+
+struct RenderArguments {
+    std::string scene;
+    RasterSettings raster;
+    Settings settings;
+    int frameCount = 1;
+    int transport = 0;  ///< into kTransportNames; both are the host's memory
+    DeviceArguments device;
+    FrameFileArguments files;
+    std::string saveInputs;
+};
+
+nlohmann::ordered_json sceneJson(const std::string& file, const raster::Scene& scene,
+                                 const std::vector<Light>& lights) {
+    nlohmann::ordered_json drawn = nlohmann::ordered_json::array();
+    for (const Light& light : lights)
+        drawn.push_back({{"name", light.name},
+                         {"type", light.type == LightType::Spot ? "spot" : "directional"},
+                         {"intensity", {light.intensity.r, light.intensity.g, light.intensity.b}}});
+    return {{"file", file},
+            {"triangles", scene.triangleCount()},
+            {"meshes", scene.meshes.size()},
+            {"instances", scene.instances.size()},
+            {"materials", scene.materials.size()},
+            {"textures", scene.textures.size()},
+            {"cameras", scene.cameras.size()},
+            {"lights", drawn},
+            {"notes", scene.notes}};
+}
+
+raster::Scene loadScene(const std::string& file) {
+    raster::Scene scene = raster::loadGltf(file);
+    log(LogLevel::Info,
+        fmt::format("{}: {} triangles, {} materials, {} textures, {} lights", file, scene.triangleCount(),
+                    scene.materials.size(), scene.textures.size(), scene.lights.size()));
+    for (const std::string& note : scene.notes) log(LogLevel::Warning, fmt::format("{}: {}", file, note));
+    return scene;
+}
+
+void renderScene(const RenderArguments& arguments) {
+    // What can be refused is refused before anything slow is done.
+    OutputSet outputs;
+    const FrameFiles files(arguments.files, outputs);
+    const auto inputsFolder =
+        arguments.saveInputs.empty() ? std::filesystem::path() : outputs.addFolder(arguments.saveInputs, kInputsFile);
+    validate(arguments.settings);
+
+    const Stopwatch load;
+    const raster::Scene scene = loadScene(arguments.scene);
+    const Camera camera = raster::cameraFor(scene, arguments.raster.camera, arguments.raster.size);
+    const std::vector<Light> lights = raster::fitLights(scene, {arguments.raster.sun});
+    const double loadMs = load.ms();
+
+    // The GL context outlives everything of OpenCL's: drivers that share objects between the two insist on it.
+    const std::unique_ptr<raster::GlContext> context = raster::createContext(arguments.raster.gl);
+    raster::SceneRenderer renderer(*context, scene);
+    const ChosenDevice chosen = chooseDevice(arguments.device);
+    Pipeline pipeline(chosen.device);
+    log(LogLevel::Info, "transport host: textures are read back into memory that OpenCL uses in place");
+
+    FrameImages images;
+    FrameTiming timing;
+    {
+        Progress progress("rendering");
+        for (int i = 0; i < arguments.frameCount; ++i) {
+            if (i == 1) timing.clear();
+            const Stopwatch whole, draw;
+            const GlFrame textures = renderer.render(camera, camera, lights,
+                                                     {arguments.raster.size, arguments.raster.rsmSizePx,
+                                                      arguments.raster.shadowSizePx, arguments.raster.background});
+            context->gl().Finish();
+            timing.addStep("raster", draw.ms());
+
+            const Stopwatch read;
+            images = readBack(textures, camera, lights, context->getProcAddress());
+            timing.addStep("read back", read.ms());
+            if (i == 0) files.check(images.inputs());
+
+            const Stopwatch compute;
+            pipeline.setFrame(images.inputs());
+            pipeline.run(arguments.settings, [&](double part) { progress.update((i + part) / arguments.frameCount); });
+            timing.addStep("compute", compute.ms());
+            timing.addStep("frame", whole.ms());
+            timing.addStages(pipeline.stageTimes());
+        }
+    }
+
+    const FrameInputs frame = images.inputs();
+    const auto paths = outputs.paths();
+    const auto nonFinite = files.writePictures(pipeline, frame);
+    if (!inputsFolder.empty()) writeInputs(inputsFolder, frame);
+
+    nlohmann::ordered_json report = {{"program", programVersion()}, {"command", "render"}};
+    report["scene"] = sceneJson(arguments.scene, scene, lights);
+    report["raster"] = nlohmann::ordered_json::object();
+    forEachRasterSetting(arguments.raster, [&](const SettingInfo& info, const auto& value) {
+        report["raster"][info.name] = settingJson(info, value);
+    });
+    const raster::GlDescription& gl = context->description();
+    report["gl"] = {
+        {"platform", gl.platform}, {"vendor", gl.vendor}, {"renderer", gl.renderer}, {"version", gl.version}};
+    report["transport"] = "host";
+    report["loadMs"] = loadMs;
+    addFrame(report, {chosen.device, chosen.why, arguments.settings, timing, arguments.frameCount, pipeline.exposure(),
+                      nonFinite, paths});
+    files.writeReport(readableJson(report));
+    outputs.commit();
+    fmt::print("{}\n", timing.table());
+    for (const auto& path : paths) fmt::print("wrote {}\n", path.string());
+}
+
+}  // namespace
+
+void addRender(Options& program) {
+    const auto arguments = std::make_shared<RenderArguments>();
+    Options options = program.command("render", "Render a glTF scene with direct and indirect light",
+                                      [arguments] { renderScene(*arguments); });
+    options.positional("scene", arguments->scene, "a .gltf or .glb file");
+    addFrameFileOptions(options, arguments->files);
+    options.text("--save-inputs", "DIR", arguments->saveInputs,
+                 "keep G-buffer, RSMs and matrices as a folder that `earthshine indirect` reads");
+    options.group("Scene");
+    forEachRasterSetting(arguments->raster,
+                         [&options](const SettingInfo& info, auto& value) { addSetting(options, info, value); });
+    options.group("Light");
+    forEachSetting(arguments->settings,
+                   [&options](const SettingInfo& info, auto& value) { addSetting(options, info, value); });
+    addDeviceOptions(options, arguments->device);
+    options.option("--transport", "auto|host", "auto", "how pixels get from OpenGL to OpenCL",
+                   [arguments](const std::string& text) { arguments->transport = parseChoice(text, kTransportNames); });
+    options.option("--frames", "N", "1", "render this often, to time it; the first of several is not counted",
+                   [arguments](const std::string& text) { arguments->frameCount = parseInt(text, 1, 100000); });
+}
+
+}  // namespace earthshine::cli

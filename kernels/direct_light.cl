@@ -25,7 +25,7 @@ static vfloat incident(const LightParams* light, vfloat3 positionWs, vfloat3* to
     vfloat inverse = rsqrt(d2);
     vfloat cosAxis = dot3(d, *towards) * inverse;
     *towards = scale3(inverse, d);
-    vfloat cone = min(max(mad(cosAxis, light->coneScale, light->coneOffset), 0.0f), 1.0f);
+    vfloat cone = min(max(vmad(cosAxis, light->coneScale, light->coneOffset), 0.0f), 1.0f);
     vfloat q = d2 * light->inverseRange * light->inverseRange;
     vfloat window = min(max(1.0f - q * q, 0.0f), 1.0f);
     return cone * cone * window / d2;
@@ -55,18 +55,18 @@ __kernel void direct_light(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), SURFACE_
 
         vfloat w = rowTimesPoint(light.wRow, positionWs);
         vfloat inverseW = 1.0f / max(w, 1e-6f);
-        vfloat fx = floor(rowTimesPoint(light.uRow, positionWs) * inverseW * width);
-        vfloat fy = floor(rowTimesPoint(light.vRow, positionWs) * inverseW * height);
+        vfloat fx = rowTimesPoint(light.uRow, positionWs) * inverseW * width;
+        vfloat fy = rowTimesPoint(light.vRow, positionWs) * inverseW * height;
         vmask isOnMap = (w > 1e-6f) & (fx >= 0.0f) & (fx < width) & (fy >= 0.0f) & (fy < height);
-        vint x = toVint(min(max(fx, 0.0f), width - 1.0f));
-        vint y = toVint(min(max(fy, 0.0f), height - 1.0f)) + l * params.shadowHeightPx;
+        vint x = vselectInt(isOnMap, toVint(fx), 0);
+        vint y = vselectInt(isOnMap, toVint(fy), 0) + l * params.shadowHeightPx;
         vfloat occluderDepth = gather1(shadowDepth, x, y);
 
         vfloat depthInLight = rowTimesPoint(light.depthRow, positionWs);
         vfloat texelSize = light.type == LIGHT_SPOT ? light.shadowTexelSize * depthInLight : light.shadowTexelSize;
         // tan of the angle between normal and light, cut where a surface is all but edge-on.
         vfloat slope = min(sqrt(max(1.0f - cosine * cosine, 0.0f)) / max(cosine, 0.02f), 20.0f);
-        vfloat bias = texelSize * mad(params.shadowSlopeBiasTexels, slope, params.shadowBiasTexels);
+        vfloat bias = texelSize * vmad(params.shadowSlopeBiasTexels, slope, params.shadowBiasTexels);
         vmask isShadowed = isOnMap & (occluderDepth > 0.0f) & (depthInLight > occluderDepth + bias);
 
         e = vselect(isShadowed, 0.0f, e * max(cosine, 0.0f));

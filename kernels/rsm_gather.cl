@@ -45,11 +45,11 @@ __kernel void rsm_gather(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm
         vfloat3 sum = make3(0.0f, 0.0f, 0.0f);
         for (int s = 0; s < params.sampleCount; ++s) {
             float4 p = pattern[s];
-            vfloat fx = floor(mad(p.x, params.radiusUv * size, cx));
-            vfloat fy = floor(mad(p.y, params.radiusUv * size, cy));
+            vfloat fx = vmad(p.x, params.radiusUv * size, cx);
+            vfloat fy = vmad(p.y, params.radiusUv * size, cy);
             vmask isInside = (fx >= 0.0f) & (fx < size) & (fy >= 0.0f) & (fy < size);
-            vint x = toVint(min(max(fx, 0.0f), size - 1.0f));
-            vint y = toVint(min(max(fy, 0.0f), size - 1.0f)) + l * params.rsmSizePx;
+            vint x = vselectInt(isInside, toVint(fx), 0);
+            vint y = vselectInt(isInside, toVint(fy), 0) + l * params.rsmSizePx;
             RsmTexel t = rsmGather(rsm, x, y, params.rsmSizePx, &light);
             vfloat g = texelGeometry(positionWs, normalWs, t.positionWs, t.normalWs, t.radius);
             sum = mad3(vselect(isInside, g * p.z, 0.0f), t.flux, sum);

@@ -15,11 +15,11 @@ static vint displayByte(vfloat x, int curve) {
     x = max(x, 0.0f);
     if (curve == TONE_CURVE_FILMIC) {
         x = min(x, 1e6f);  // inf / inf
-        x = x * mad(2.51f, x, 0.03f) / mad(x, mad(2.43f, x, 0.59f), 0.14f);
+        x = x * vmad(2.51f, x, 0.03f) / vmad(x, vmad(2.43f, x, 0.59f), 0.14f);
     }
     x = min(x, 1.0f);
-    vfloat encoded = vselect(x <= 0.0031308f, 12.92f * x, mad(1.055f, es_pow(x, 1.0f / 2.4f), -0.055f));
-    return toVint(mad(encoded, 255.0f, 0.5f));
+    vfloat encoded = vselect(x <= 0.0031308f, 12.92f * x, vmad(1.055f, es_pow(x, 1.0f / 2.4f), -0.055f));
+    return toVint(vmad(encoded, 255.0f, 0.5f));
 }
 
 __kernel void tone_map(SURFACE_IN(inRadiance), __global const float* restrict exposure,

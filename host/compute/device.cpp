@@ -75,6 +75,7 @@ void query(const cl::Platform& platform, Found& found) {
     caps.maxAllocationBytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
     caps.maxWorkGroupSize = device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
     caps.unifiedMemory = device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != CL_FALSE;
+    caps.fusesMultiplyAdd = (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_FMA) != 0 && !emulatesFma(caps);
     if (caps.images) {
         caps.maxImageSizePx[0] = device.getInfo<CL_DEVICE_IMAGE2D_MAX_WIDTH>();
         caps.maxImageSizePx[1] = device.getInfo<CL_DEVICE_IMAGE2D_MAX_HEIGHT>();

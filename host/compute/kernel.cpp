@@ -12,9 +12,10 @@ namespace earthshine {
 
 namespace {
 
-std::string buildOptions(const Tuning& tuning) {
-    return fmt::format("-cl-std=CL1.2 -cl-mad-enable -DES_DIALECT_CL -DLANES={} -DSTORAGE_PLANAR={} -DRSM_RECORDS={}",
-                       tuning.lanes, tuning.storage == Storage::Planar ? 1 : 0, tuning.rsmRecords ? 1 : 0);
+std::string buildOptions(const DeviceCaps& caps, const Tuning& tuning) {
+    return fmt::format("-cl-std=CL1.2 -DES_DIALECT_CL -DLANES={} -DSTORAGE_PLANAR={} -DRSM_RECORDS={} -DES_FMA={}",
+                       tuning.lanes, tuning.storage == Storage::Planar ? 1 : 0, tuning.rsmRecords ? 1 : 0,
+                       caps.fusesMultiplyAdd ? 1 : 0);
 }
 
 }  // namespace
@@ -24,8 +25,8 @@ Kernel::Kernel(const Device& device, std::string name) : device_(device), name_(
     const std::string source = expandKernel(name_ + ".cl", impl.options.kernelFolder);
     arguments_ = argumentNames(source, name_, impl.tuning.rsmRecords);
     impl.checked(name_ + ": building", [&] {
-        const cl::Program program =
-            buildProgram(impl.context, impl.device, name_, source, buildOptions(impl.tuning), impl.cacheFolder);
+        const cl::Program program = buildProgram(impl.context, impl.device, name_, source,
+                                                 buildOptions(impl.caps, impl.tuning), impl.cacheFolder);
         kernel_ = cl::Kernel(program, name_.c_str());
         const auto limit = kernel_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(impl.device);
         localSize_[0] = std::min<std::size_t>(std::size_t(impl.tuning.localSizePx[0]), limit);

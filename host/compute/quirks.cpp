@@ -6,6 +6,10 @@ bool runsOnLlvmpipe(const DeviceCaps& caps) {
     return caps.name.find("llvmpipe") != std::string::npos;
 }
 
+bool emulatesFma(const DeviceCaps& caps) {
+    return runsOnLlvmpipe(caps);
+}
+
 std::string knownUnusable(const DeviceCaps& caps) {
     // "OpenCL C 1.1 Mesa 22.3.6": clang's OpenCL C of another name keeps the same form.
     const std::string& version = caps.openclCVersion;

@@ -14,4 +14,7 @@ bool runsOnLlvmpipe(const DeviceCaps& caps);
 ///   Clover (Mesa <= 24) lists devices of OpenCL C 1.1: our kernels need 1.2.
 std::string knownUnusable(const DeviceCaps& caps);
 
+/// fma() is many instructions although the device claims it: llvmpipe (Mesa 22.3) computes it in integers.
+bool emulatesFma(const DeviceCaps& caps);
+
 }  // namespace earthshine

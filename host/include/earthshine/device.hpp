@@ -36,6 +36,7 @@ struct DeviceCaps {
     std::size_t maxWorkGroupSize = 0;
     std::size_t maxImageSizePx[2] = {0, 0};
     bool unifiedMemory = false;
+    bool fusesMultiplyAdd = false;  ///< fma() is one instruction
     std::string unusable;  ///< why this device cannot run Earthshine; empty if it can
     Tuning tuning;         ///< the defaults chosen for it
 };

@@ -16,7 +16,7 @@ namespace earthshine::raster {
 namespace {
 
 constexpr double kMargin = 1e-4;         // of a map's side: far below half a texel of any map
-constexpr double kFloatSlack = 1e-6;     // of the largest coordinate: matrices are rounded to floats
+constexpr double kFloatSlack = 2e-7;     // of the largest coordinate: the view matrix is rounded to floats
 constexpr double kSmallestSideM = 1e-6;  // a scene seen edge-on still has a map
 constexpr double kWidestConeDeg = 85.0;  // a perspective map of 170 degrees is 23 times as wide as it is deep
 constexpr double kNearOfFar = 1e-3;      // keeps the depth buffer good to a ten-thousandth of the reach

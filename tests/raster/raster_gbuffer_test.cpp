@@ -338,13 +338,16 @@ TEST(RasterGBuffer, NearerSurfacesHideFartherOnes) {
     Scene scene = quadScene(diffuse({1, 0, 0}));
     scene.materials.push_back(diffuse({0, 1, 0}));
     scene.meshes.push_back(unitQuad(1));
-    scene.instances.push_back({1, glm::translate(glm::mat4(1), glm::vec3(1, 0, 1e-3f))});  // the right half
-    for (int order = 0; order < 2; ++order) {
+    for (int nearer = 0; nearer < 2; ++nearer) {  // whatever order they are drawn in
+        scene.instances = {{nearer, glm::translate(glm::mat4(1), glm::vec3(1, 0, 1e-3f))},  // the right half
+                           {1 - nearer, glm::mat4(1)}};
         const HostFrame frame = drawScene(scene, kFacing, {{2, 1}, 2, 2}, {directionalLight(glm::vec3(1), kFacing)});
-        EXPECT_EQ(glm::vec3(rgba(frame.albedo, 0, 0)), glm::vec3(1, 0, 0));
-        EXPECT_EQ(glm::vec3(rgba(frame.albedo, 1, 0)), glm::vec3(0, 1, 0));
+        for (int x = 0; x < 2; ++x) {
+            const glm::vec3 seen = scene.materials[std::size_t(x == 1 ? nearer : 1 - nearer)].baseColor;
+            EXPECT_EQ(glm::vec3(rgba(frame.albedo, x, 0)), seen);
+            EXPECT_EQ(glm::vec3(rgba(frame.rsmFlux, x, 1)), seen);  // 1 lx on texels of 1 m^2
+        }
         EXPECT_NEAR(double(*frame.shadowDepth.pixel(0, 0) - *frame.shadowDepth.pixel(1, 0)), 1e-3, 1e-6);
-        std::swap(scene.instances[0], scene.instances[1]);
     }
 }
 

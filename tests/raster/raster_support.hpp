@@ -47,7 +47,8 @@ struct HostFrame {
 };
 HostFrame readFrame(GlContext& context, const GlFrame& frame);
 
-/// One context a process, made by `createContext("egl")`.
+/// One context a process: "egl", so that a GPU changes no result, or what the environment variable EARTHSHINE_TEST_GL
+/// names ("egl-device" tests a GPU's driver).
 GlContext& sharedContext();
 
 /// Draws one still frame of a scene in the shared context.

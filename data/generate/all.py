@@ -3,10 +3,11 @@
 import pathlib
 import sys
 
+import atrium
 import cornell
 import plates
 
-SCENES = {"cornell": cornell, "plates": plates}
+SCENES = {"atrium": atrium, "cornell": cornell, "plates": plates}
 
 
 def main(names):

@@ -75,7 +75,7 @@ def check_primitive(gltf, binary, primitive, name):
     require(area.min() > 1e-9, f"{name}: a triangle of {area.min():.1e} m^2")
     face /= 2 * area[:, None]
     agreement = np.sum(face * normal[triangles].mean(axis=1), axis=1)
-    require(agreement.min() > 0.2, f"{name}: winding against the normal (cosine {agreement.min():.2f})")
+    require(agreement.min() > 0.1, f"{name}: winding against the normal (cosine {agreement.min():.2f})")
     return len(triangles)
 
 

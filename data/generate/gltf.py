@@ -25,6 +25,7 @@ class Glb:
     def __init__(self, scene_name, copyright_line):
         self.binary = bytearray()
         self.extensions = set()
+        self.accessors_of = {}  # (id of a mesh.Mesh, with tangents?) -> (the mesh, kept alive; attributes; indices)
         self.json = {
             "asset": {"version": "2.0", "generator": "earthshine data/generate", "copyright": copyright_line},
             "scene": 0,
@@ -105,20 +106,22 @@ class Glb:
         """`parts`: pairs of a mesh.Mesh and a material index; tangents are written where the material has a normal map."""
         primitives = []
         for mesh, material in parts:
-            attributes = {
-                "POSITION": self._add_attribute(mesh.positions, bounds=True),
-                "NORMAL": self._add_attribute(mesh.normals),
-            }
+            attributes, indices = self._add_geometry(mesh, "normalTexture" in self.json["materials"][material])
+            primitives.append({"attributes": attributes, "indices": indices, "material": material})
+        return self._add("meshes", {"name": name, "primitives": primitives})
+
+    def _add_geometry(self, mesh, with_tangents):
+        """The accessors of a mesh; those of one that was added before serve again."""
+        key = (id(mesh), with_tangents)
+        if key not in self.accessors_of:
+            attributes = {"POSITION": self._add_attribute(mesh.positions, bounds=True),
+                          "NORMAL": self._add_attribute(mesh.normals)}
             if mesh.uvs is not None:
                 attributes["TEXCOORD_0"] = self._add_attribute(mesh.uvs)
-            if "normalTexture" in self.json["materials"][material]:
+            if with_tangents:
                 attributes["TANGENT"] = self._add_attribute(mesh.tangents())
-            primitives.append({
-                "attributes": attributes,
-                "indices": self._add_indices(mesh.triangles, len(mesh.positions)),
-                "material": material,
-            })
-        return self._add("meshes", {"name": name, "primitives": primitives})
+            self.accessors_of[key] = (mesh, attributes, self._add_indices(mesh.triangles, len(mesh.positions)))
+        return self.accessors_of[key][1:]
 
     def add_camera(self, name, vertical_fov, aspect, near, far):
         """A perspective camera; `vertical_fov` in radians, planes in metres."""

@@ -15,6 +15,7 @@ struct GltfContext {
     GltfFile& file;
     const tinygltf::Model& model;
     Scene& scene;
+    bool drawsMarkers = false;  ///< LoadOptions
 
     /// Adds a line to Scene::notes, once.
     void note(const std::string& line) const;

@@ -87,7 +87,7 @@ void noteIgnoredExtensions(const GltfContext& context) {
     }
 }
 
-Scene load(GltfFile& file) {
+Scene load(GltfFile& file, const LoadOptions& options) {
     const json document = parseJson(file);
     if (!document.is_object()) file.fail("", "is no JSON object");
     checkExtensions(document, file);
@@ -102,7 +102,7 @@ Scene load(GltfFile& file) {
     addImages(document, model);
 
     Scene scene;
-    const GltfContext context{file, model, scene};
+    const GltfContext context{file, model, scene, options.drawsMarkers};
     noteIgnoredExtensions(context);
     GltfMaterials materials(context);
     GltfMeshes meshes(context, materials);
@@ -114,10 +114,10 @@ Scene load(GltfFile& file) {
 
 }  // namespace
 
-Scene loadGltf(const std::filesystem::path& path) {
+Scene loadGltf(const std::filesystem::path& path, const LoadOptions& options) {
     GltfFile file(path);
     try {
-        return load(file);
+        return load(file, options);
     } catch (const std::bad_alloc&) {
         file.fail("", "needs more memory than there is");
     } catch (const std::length_error&) {

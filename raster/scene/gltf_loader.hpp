@@ -7,6 +7,10 @@
 
 namespace earthshine::raster {
 
+struct LoadOptions {
+    bool drawsMarkers = false;  ///< also nodes that are named like an engine's markers (editor_markers.hpp)
+};
+
 /// Loads the default scene of a .gltf or .glb file: its meshes as triangles with normals and tangents, its instances,
 /// materials, textures, lights and cameras, placed in the world. Meshes, materials and images that nothing in the scene
 /// uses are checked but not loaded.
@@ -20,6 +24,6 @@ namespace earthshine::raster {
 /// (after links are resolved) and data URIs are read.
 ///
 /// @throws InputError with one line: the file, the place in it, what is wrong.
-Scene loadGltf(const std::filesystem::path& path);
+Scene loadGltf(const std::filesystem::path& path, const LoadOptions& options = {});
 
 }  // namespace earthshine::raster

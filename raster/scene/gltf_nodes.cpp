@@ -9,6 +9,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
+#include "raster/scene/editor_markers.hpp"
+
 namespace earthshine::raster {
 
 namespace {
@@ -151,6 +153,10 @@ private:
     void placeMesh(const tinygltf::Node& node, const glm::dmat4& worldFromNode, const std::string& place) {
         if (!isInvertible(worldFromNode)) {
             context_.note(place + ": its scale leaves no volume, and its mesh is not drawn");
+            return;
+        }
+        if (const char* engine = markerEngine(node.name); engine && !context_.drawsMarkers) {
+            context_.note(fmt::format("nodes named like markers of {} are not drawn", engine));
             return;
         }
         if (node.skin >= 0) context_.note(place + ": its skin is drawn in the bind pose");

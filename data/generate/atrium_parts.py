@@ -1,39 +1,25 @@
-"""The architecture of atrium.glb: columns, arches, vaults, balustrade, roof. Each function returns {material: Mesh}.
-
-A bay's own frame: x along the arcade, bay centre at x = 0; z = 0 is the line of column axes, +z the court,
--z the back wall; y = 0 is the arcade's floor.
+"""The parts that atrium.glb repeats: columns, arches, vaults, balustrade, doors. Each function returns
+{material: Mesh} in the frame that atrium_plan.py describes, or a Mesh that such a part is made of.
 """
 
 import numpy as np
 
-from mesh import Mesh, arc, arch_sweep, arch_wall, box, lathe, merged, quad, rectangle_moulding, surface
-
-BAY = 3.2                  # between column axes, and from them to the back wall
-COURT_LEVEL = -0.15        # the court lies a step below the arcade
-STEP = 0.45                # how far the arcade's floor reaches into the court
-SPRINGING, ARCH_RADIUS = 3.0, 1.3
-HALF_WALL = 0.25           # half the thickness of the lower arcade wall
-RIB = 0.2                  # half the width of a transverse rib
-PILASTER = 0.14            # its projection from the back wall
-VAULT_RISE = 1.45
-UPPER_FLOOR = 4.9
-UPPER_SPRINGING, UPPER_RADIUS, UPPER_HALF_WALL = 7.2, 0.62, 0.18
-CEILING = 8.15
-RAIL = UPPER_FLOOR + 0.9   # top of the balustrade
-EAVES_OUT, EAVES_LEVEL = 0.75, 8.42
-OUTER = BAY + 0.5          # outside of the outer wall
-ROOF_PITCH = 0.325
-DADO = 1.05                # height of the painted foot of the back walls
-WINDOW_RADIUS, WINDOW_SPRINGING = 0.62, 2.25
-
-
-def combine(*parts):
-    """Joins {material: Mesh} dictionaries into one."""
-    joined = {}
-    for part in parts:
-        for material, mesh in part.items():
-            joined.setdefault(material, []).append(mesh)
-    return {material: merged(meshes) for material, meshes in joined.items()}
+from atrium_plan import (
+    BAY,
+    SPRINGING,
+    ARCH_RADIUS,
+    HALF_WALL,
+    RIB,
+    PILASTER,
+    VAULT_RISE,
+    UPPER_FLOOR,
+    UPPER_SPRINGING,
+    UPPER_RADIUS,
+    UPPER_HALF_WALL,
+    CEILING,
+    RAIL,
+)
+from mesh import arc, arch_sweep, arch_wall, box, lathe, merged, quad, ring, surface
 
 
 def block_stack(levels, half=None):
@@ -44,19 +30,40 @@ def block_stack(levels, half=None):
 def acanthus(radius, bottom, height, width, reach, count, turn, rows, columns):
     """A ring of leaves that rise from a bell and curl outwards at the tip; rows x columns points a leaf."""
     along, across = np.linspace(0, 1, rows), np.linspace(-1, 1, columns)
-    outline = width * (np.sqrt(1 - 0.97 * along ** 3) * (0.85 + 0.15 * np.cos(along * 9)))
+    outline = width * (np.sqrt(1 - 0.97 * along**3) * (0.85 + 0.15 * np.cos(along * 9)))
     curl = np.clip((along - 0.55) / 0.45, 0, 1) * np.radians(150)  # the tip turns over by this angle
     out = radius + 0.006 + 0.012 * along + reach / 2 * (1 - np.cos(curl))
     up = bottom + height * np.where(along < 0.55, along, 0.55) + height * 0.25 * np.sin(curl)
-    ridge = 0.06 * width * (1 - np.abs(across)) - 0.25 * width * across ** 2
-    points = np.stack([across[None, :] * outline[:, None], np.broadcast_to(up[:, None], (rows, columns)),
-                       out[:, None] + ridge[None, :]], axis=2)
+    ridge = 0.06 * width * (1 - np.abs(across)) - 0.25 * width * across**2
+    points = np.stack(
+        [
+            across[None, :] * outline[:, None],
+            np.broadcast_to(up[:, None], (rows, columns)),
+            out[:, None] + ridge[None, :],
+        ],
+        axis=2,
+    )
     leaf = surface(points.transpose(1, 0, 2))
     return merged(leaf.turned_y(2 * np.pi * (k + turn) / count) for k in range(count))
 
 
-def column(height, radius, segments, leaf_grid):
-    """Attic base, shaft with entasis, leafed capital and abacus; `radius` is that of the shaft's foot."""
+def fluted_shaft(foot, head, bottom, top, flutes):
+    """A shaft that is smooth in its lower third and fluted above; the grooves run out in rounded ends."""
+    t = np.array([0.0, 0.16, 0.32, 0.335, 0.35, 0.38, 0.53, 0.68, 0.83, 0.95, 0.965, 0.98, 1.0])
+    depth = np.interp(t, [0.32, 0.335, 0.35, 0.38, 0.95, 0.965, 0.98], [0.0, 0.6, 0.87, 1.0, 1.0, 0.75, 0.0])
+    around = ring(6 * flutes)
+    groove = np.tile([0.0, 0.55, 0.95, 1.0, 0.95, 0.55], flutes + 1)[: 6 * flutes + 1]
+    radius = foot - (foot - head) * t**1.8
+    r = radius * (1 - 0.075 * depth * groove[:, None])
+    points = np.stack(
+        [around[:, :1] * r, np.broadcast_to(bottom + t * (top - bottom), r.shape), around[:, 1:] * r], axis=2
+    )
+    return surface(points)
+
+
+def column(height, radius, segments, leaf_grid, flutes=0):
+    """Attic base, shaft with entasis (fluted if `flutes` > 0), leafed capital and abacus; `radius` is that of the
+    shaft's foot."""
     r = radius
     plinth, abacus = 0.66 * r, 0.52 * r
     capital = 2.1 * r
@@ -64,39 +71,68 @@ def column(height, radius, segments, leaf_grid):
     base = [
         arc((1.22 * r, plinth + 0.25 * r), 0.25 * r, -90, 90, 8),
         [(1.22 * r, plinth + 0.50 * r), (1.22 * r, plinth + 0.56 * r)],
-        [(1.22 * r, plinth + 0.56 * r)] + arc((1.26 * r, plinth + 0.74 * r), 0.17 * r, 250, 130, 6)
+        [(1.22 * r, plinth + 0.56 * r)]
+        + arc((1.26 * r, plinth + 0.74 * r), 0.17 * r, 250, 130, 6)
         + [(1.14 * r, plinth + 0.90 * r)],
         arc((1.12 * r, plinth + 1.0 * r), 0.10 * r, -90, 90, 6),
         [(1.12 * r, plinth + 1.10 * r), (1.03 * r, base_top)],
     ]
-    t = np.linspace(0, 1, 7)
-    shaft = [list(zip(r * (1 - 0.14 * t ** 1.8), base_top + t * (shaft_top - base_top)))]
+    if flutes:
+        shaft = fluted_shaft(r, 0.86 * r, base_top, shaft_top, flutes)
+    else:
+        t = np.linspace(0, 1, 7)
+        shaft = lathe([list(zip(r * (1 - 0.14 * t**1.8), base_top + t * (shaft_top - base_top)))], segments)
     neck = 0.86 * r
     bell_at = np.linspace(0, 1, 7)
     capital_profile = [
         arc((neck, shaft_top + 0.07 * r), 0.10 * r, -80, 80, 5),
-        list(zip(neck * (0.98 + 0.06 * bell_at + 0.42 * bell_at ** 5), shaft_top + 0.14 * r + bell_at * (capital - 0.14 * r))),
+        list(
+            zip(
+                neck * (0.98 + 0.06 * bell_at + 0.42 * bell_at**5),
+                shaft_top + 0.14 * r + bell_at * (capital - 0.14 * r),
+            )
+        ),
     ]
     foot = shaft_top + 0.14 * r
     half = 1.57 * r
-    return {"stone": merged([
-        box((-1.6 * r, 0, -1.6 * r), (1.6 * r, plinth, 1.6 * r), "-y"),
-        lathe(base, segments), lathe(shaft, segments), lathe(capital_profile, segments),
-        acanthus(neck, foot, 1.0 * r, 0.30 * r, 0.20 * r, 8, 0.0, *leaf_grid),
-        acanthus(neck * 1.04, foot + 0.1 * r, 1.62 * r, 0.30 * r, 0.34 * r, 8, 0.5, *leaf_grid),
-        acanthus(neck * 1.08, foot + 0.3 * r, 1.66 * r, 0.20 * r, 0.86 * r, 4, 0.5, *leaf_grid),
-        box((-half * 0.94, height - abacus, -half * 0.94), (half * 0.94, height - abacus * 0.45, half * 0.94), "+y"),
-        box((-half, height - abacus * 0.5, -half), (half, height, half)),
-    ])}
+    return {
+        "stone": merged(
+            [
+                box((-1.6 * r, 0, -1.6 * r), (1.6 * r, plinth, 1.6 * r), "-y"),
+                lathe(base, segments),
+                shaft,
+                lathe(capital_profile, segments),
+                acanthus(neck, foot, 1.0 * r, 0.30 * r, 0.20 * r, 8, 0.0, *leaf_grid),
+                acanthus(neck * 1.04, foot + 0.1 * r, 1.62 * r, 0.30 * r, 0.34 * r, 8, 0.5, *leaf_grid),
+                acanthus(neck * 1.08, foot + 0.3 * r, 1.66 * r, 0.20 * r, 0.86 * r, 4, 0.5, *leaf_grid),
+                box(
+                    (-half * 0.94, height - abacus, -half * 0.94),
+                    (half * 0.94, height - abacus * 0.45, half * 0.94),
+                    "+y",
+                ),
+                box((-half, height - abacus * 0.5, -half), (half, height, half)),
+            ]
+        )
+    }
 
 
 def pier(height, half):
     """A square pier for the corners, with the base and the abacus of the columns."""
     r = 0.21
-    return {"ashlar": box((-half, 0.3, -half), (half, height - 0.3, half), "-y +y"), "stone": block_stack([
-        (0, 0.14, half + 0.09), (0.14, 0.24, half + 0.06), (0.24, 0.30, half + 0.03),
-        (height - 0.34, height - 0.28, half + 0.03), (height - 0.20, height - 0.10, half + 0.04),
-        (height - 0.28, height - 0.20, half), (height - 0.52 * r, height, max(1.57 * r, half + 0.07))])}
+    return {
+        "ashlar": box((-half, 0.3, -half), (half, height - 0.3, half), "-y +y"),
+        "stone": block_stack(
+            [
+                (0, 0.14, half + 0.09),
+                (0.14, 0.24, half + 0.06),
+                (0.24, 0.30, half + 0.03),
+                (height - 0.34, height - 0.28, half + 0.03),
+                (height - 0.20, height - 0.10, half + 0.04),
+                (height - 0.28, height - 0.20, half),
+                (height - 0.52 * r, height, max(1.57 * r, half + 0.07)),
+            ]
+        ),
+    }
 
 
 def keystone(radius, springing, depth, z):
@@ -113,10 +149,19 @@ def keystone(radius, springing, depth, z):
 def archivolt(radius, springing, z, size, steps):
     """The moulding around an arch on its +z side: two fasciae and a roll."""
     s = size
-    return arch_sweep(radius, springing, [
-        [(0, z - 0.001), (0, z + 0.20 * s)], [(0, z + 0.20 * s), (0.42 * s, z + 0.20 * s)],
-        [(0.42 * s, z + 0.20 * s), (0.42 * s, z + 0.30 * s)], [(0.42 * s, z + 0.30 * s), (0.74 * s, z + 0.30 * s)],
-        arc((0.87 * s, z + 0.30 * s), 0.13 * s, 180, 0, 5), [(s, z + 0.30 * s), (s, z)]], steps)
+    return arch_sweep(
+        radius,
+        springing,
+        [
+            [(0, z - 0.001), (0, z + 0.20 * s)],
+            [(0, z + 0.20 * s), (0.42 * s, z + 0.20 * s)],
+            [(0.42 * s, z + 0.20 * s), (0.42 * s, z + 0.30 * s)],
+            [(0.42 * s, z + 0.30 * s), (0.74 * s, z + 0.30 * s)],
+            arc((0.87 * s, z + 0.30 * s), 0.13 * s, 180, 0, 5),
+            [(s, z + 0.30 * s), (s, z)],
+        ],
+        steps,
+    )
 
 
 def roundel(radius, y, z):
@@ -130,15 +175,19 @@ def roundel(radius, y, z):
 
 def groin_vault(half_x, half_z, rise, steps):
     """Two crossing barrels over a rectangle about the origin, springing from y = 0, seen from below."""
+
     def barrel(hx, hz):
         phi = np.linspace(-np.pi / 2, np.pi / 2, 2 * steps + 1)
         t = np.linspace(0, 1, max(steps // 2, 2) + 1)
         v = np.sin(phi)
         u = np.abs(v)[None, :] + t[:, None] * (1 - np.abs(v))[None, :]
-        points = np.stack([hx * u, np.broadcast_to(rise * np.cos(phi), u.shape), np.broadcast_to(hz * v, u.shape)], axis=2)
+        points = np.stack(
+            [hx * u, np.broadcast_to(rise * np.cos(phi), u.shape), np.broadcast_to(hz * v, u.shape)], axis=2
+        )
         uvs = np.stack([hx * u, np.broadcast_to(phi * (hz + rise) / 2, u.shape)], axis=2)
         half = surface(points, uvs)
         return [half, half.turned_y(np.pi)]
+
     return merged(barrel(half_x, half_z) + [m.turned_y(np.pi / 2) for m in barrel(half_z, half_x)])
 
 
@@ -147,8 +196,14 @@ def transverse_rib(steps=16):
     angle = np.linspace(np.pi, 0, steps + 1)
 
     def curve(near, far, rise, x):
-        return np.stack([np.full_like(angle, x), SPRINGING + rise * np.sin(angle),
-                         (near + far) / 2 + (near - far) / 2 * np.cos(angle)], axis=1)
+        return np.stack(
+            [
+                np.full_like(angle, x),
+                SPRINGING + rise * np.sin(angle),
+                (near + far) / 2 + (near - far) / 2 * np.cos(angle),
+            ],
+            axis=1,
+        )
 
     inner = lambda x: curve(-HALF_WALL, -BAY + PILASTER, 1.27, x)
     outer = lambda x: curve(-HALF_WALL + 0.03, -BAY - 0.03, VAULT_RISE + 0.03, x)
@@ -156,9 +211,15 @@ def transverse_rib(steps=16):
     left = surface(np.stack([outer(-RIB), inner(-RIB)], axis=1))
     soffit = surface(np.stack([inner(-RIB), inner(RIB)], axis=1))
     stone = [right, left, soffit]
-    for low, high, half, out in ((0, 0.16, 0.30, 0.09), (0.16, 0.24, 0.27, 0.05), (0.24, 2.66, 0.22, 0.0),
-                                 (2.66, 2.71, 0.25, 0.03), (2.71, 2.89, 0.22, 0.0), (2.89, 2.94, 0.26, 0.04),
-                                 (2.94, 3.00, 0.29, 0.07)):
+    for low, high, half, out in (
+        (0, 0.16, 0.30, 0.09),
+        (0.16, 0.24, 0.27, 0.05),
+        (0.24, 2.66, 0.22, 0.0),
+        (2.66, 2.71, 0.25, 0.03),
+        (2.71, 2.89, 0.22, 0.0),
+        (2.89, 2.94, 0.26, 0.04),
+        (2.94, 3.00, 0.29, 0.07),
+    ):
         stone.append(box((-half, low, -BAY - 0.01), (half, high, -BAY + PILASTER + out), "-z"))
     return {"stone": merged(stone)}
 
@@ -170,11 +231,16 @@ def lower_bay():
     vault = groin_vault(BAY / 2 - RIB, depth / 2, VAULT_RISE, 12)
     return {
         "ashlar": front.moved(0, 0, HALF_WALL),
-        "plaster": merged([front.turned_y(np.pi).moved(0, 0, -HALF_WALL),
-                           vault.moved(0, SPRINGING, -HALF_WALL - depth / 2)]),
-        "stone": merged([arch_sweep(ARCH_RADIUS, SPRINGING, [[(0, -HALF_WALL), (0, HALF_WALL)]], 28),
-                         archivolt(ARCH_RADIUS, SPRINGING, HALF_WALL, 0.17, 28),
-                         keystone(ARCH_RADIUS, SPRINGING, 0.11, HALF_WALL)]),
+        "plaster": merged(
+            [front.turned_y(np.pi).moved(0, 0, -HALF_WALL), vault.moved(0, SPRINGING, -HALF_WALL - depth / 2)]
+        ),
+        "stone": merged(
+            [
+                arch_sweep(ARCH_RADIUS, SPRINGING, [[(0, -HALF_WALL), (0, HALF_WALL)]], 28),
+                archivolt(ARCH_RADIUS, SPRINGING, HALF_WALL, 0.17, 28),
+                keystone(ARCH_RADIUS, SPRINGING, 0.11, HALF_WALL),
+            ]
+        ),
     }
 
 
@@ -190,167 +256,63 @@ def upper_bay():
     for x in (-BAY / 4, BAY / 4):
         front = arch_wall(BAY / 4, UPPER_RADIUS, UPPER_SPRINGING, CEILING, 18)
         wall += [front.moved(x, 0, UPPER_HALF_WALL), front.turned_y(np.pi).moved(x, 0, -UPPER_HALF_WALL)]
-        sweep.append(arch_sweep(UPPER_RADIUS, UPPER_SPRINGING, [[(0, -UPPER_HALF_WALL), (0, UPPER_HALF_WALL)]], 18).moved(x, 0, 0))
+        sweep.append(
+            arch_sweep(UPPER_RADIUS, UPPER_SPRINGING, [[(0, -UPPER_HALF_WALL), (0, UPPER_HALF_WALL)]], 18).moved(
+                x, 0, 0
+            )
+        )
         volts.append(archivolt(UPPER_RADIUS, UPPER_SPRINGING, UPPER_HALF_WALL, 0.11, 18).moved(x, 0, 0))
     rails = []
     for x0, x1 in ((-BAY / 2 + 0.19, -0.19), (0.19, BAY / 2 - 0.19)):
-        for low, high, half in ((UPPER_FLOOR, UPPER_FLOOR + 0.12, 0.13), (RAIL - 0.16, RAIL - 0.11, 0.11), (RAIL - 0.11, RAIL, 0.15)):
+        for low, high, half in (
+            (UPPER_FLOOR, UPPER_FLOOR + 0.12, 0.13),
+            (RAIL - 0.16, RAIL - 0.11, 0.11),
+            (RAIL - 0.11, RAIL, 0.15),
+        ):
             rails.append(box((x0, low, -half), (x1, high, half), "-x +x"))
     return {"stone": merged(sweep + volts + rails), "plaster": merged(wall)}
 
 
 def pedestal():
     """What an upper column stands on, part of the balustrade."""
-    return {"stone": block_stack([(UPPER_FLOOR, UPPER_FLOOR + 0.14, 0.22), (UPPER_FLOOR + 0.14, RAIL - 0.12, 0.19),
-                                  (RAIL - 0.12, RAIL - 0.07, 0.21), (RAIL - 0.07, RAIL + 0.01, 0.235)])}
+    return {
+        "stone": block_stack(
+            [
+                (UPPER_FLOOR, UPPER_FLOOR + 0.14, 0.22),
+                (UPPER_FLOOR + 0.14, RAIL - 0.12, 0.19),
+                (RAIL - 0.12, RAIL - 0.07, 0.21),
+                (RAIL - 0.07, RAIL + 0.01, 0.235),
+            ]
+        )
+    }
 
 
 def baluster():
     """A turned baluster, 0.62 m."""
     profile = [
         arc((0.050, 0.075), 0.026, -80, 60, 4) + [(0.040, 0.115)],
-        [(0.040, 0.115), (0.062, 0.165), (0.076, 0.215), (0.074, 0.265), (0.058, 0.330), (0.040, 0.400), (0.031, 0.460),
-         (0.032, 0.490)],
+        [
+            (0.040, 0.115),
+            (0.062, 0.165),
+            (0.076, 0.215),
+            (0.074, 0.265),
+            (0.058, 0.330),
+            (0.040, 0.400),
+            (0.031, 0.460),
+            (0.032, 0.490),
+        ],
         arc((0.030, 0.510), 0.020, -80, 80, 3),
         [(0.036, 0.535), (0.060, 0.570)],
     ]
-    return {"stone": merged([lathe(profile, 10), box((-0.075, 0, -0.075), (0.075, 0.05, 0.075), "-y"),
-                             box((-0.068, 0.57, -0.068), (0.068, 0.62, 0.068), "+y")])}
-
-
-def cornice(half_x, half_z):
-    """The string course between the storeys and the cornice under the eaves, all round the court."""
-    w, u = HALF_WALL, UPPER_HALF_WALL
-    f = UPPER_FLOOR
-    course = [
-        [(w, f - 0.34), (w + 0.04, f - 0.34)], [(w + 0.04, f - 0.34), (w + 0.04, f - 0.24)],
-        [(w + 0.04, f - 0.24)] + arc((w + 0.16, f - 0.24), 0.10, 180, 90, 6) + [(w + 0.16, f - 0.14)],
-        [(w + 0.16, f - 0.14), (w + 0.24, f - 0.14)], [(w + 0.24, f - 0.14), (w + 0.24, f - 0.05)],
-        [(w + 0.24, f - 0.05)] + arc((w + 0.24, f - 0.025), 0.025, -90, 90, 6) + [(w + 0.24, f)],
-        [(w + 0.24, f), (-BAY, f)],
-    ]
-    top = CEILING + 0.17
-    crown = [
-        [(u, CEILING - 0.16), (u + 0.03, CEILING - 0.16)], [(u + 0.03, CEILING - 0.16), (u + 0.03, CEILING - 0.06)],
-        [(u + 0.03, CEILING - 0.06)] + arc((u + 0.13, CEILING - 0.06), 0.10, 180, 90, 6),
-        [(u + 0.13, CEILING + 0.04), (u + 0.20, CEILING + 0.04)], [(u + 0.20, CEILING + 0.04), (u + 0.20, top)],
-    ]
-    # These run upwards, so they look outwards before they are turned round.
-    upward = lambda pieces: [piece[::-1] for piece in pieces]
-    return {"stone": rectangle_moulding(half_x, half_z, upward(course) + upward(crown))}
-
-
-def shell(half_x, half_z):
-    """Everything that runs round the court in one piece: floors, back walls, ceiling, outer walls and roof."""
-    ring = lambda *points: rectangle_moulding(half_x, half_z, [list(points)])
-    ridge = EAVES_LEVEL + (EAVES_OUT + OUTER) * ROOF_PITCH
-    inset = -BAY
-    rail = [[(inset, DADO + 0.07), (inset + 0.05, DADO + 0.07)], [(inset + 0.05, DADO + 0.07), (inset + 0.05, DADO + 0.03)],
-            arc((inset + 0.02, DADO + 0.03), 0.03, 0, -90, 4), [(inset + 0.02, DADO), (inset, DADO)]]
-    base = [[(inset, 0.20), (inset + 0.03, 0.20)], [(inset + 0.03, 0.20), (inset + 0.03, 0.0)]]
-    soffit = EAVES_LEVEL - 0.10
-    north_inside, north_outside = ring((inset, UPPER_FLOOR), (inset, DADO + 0.07)), ring((-OUTER, 0), (-OUTER, UPPER_FLOOR))
     return {
-        "arcade_tiles": ring((inset, 0), (STEP - 0.3, 0)),
-        "stone": merged([ring((STEP - 0.3, 0), (STEP, 0)), ring((STEP, 0), (STEP, COURT_LEVEL)),
-                         rectangle_moulding(half_x, half_z, rail + base)]),
-        "dado": ring((inset, DADO), (inset, 0.20)),
-        "plaster": merged([without_south(north_inside), without_south(north_outside), ring((inset, CEILING), (inset, UPPER_FLOOR)),
-                           ring((-OUTER, COURT_LEVEL - 0.4), (-OUTER, 0)), ring((-OUTER, UPPER_FLOOR), (-OUTER, ridge))]),
-        "wood": merged([ring((-UPPER_HALF_WALL, CEILING), (inset, CEILING)),
-                        ring((EAVES_OUT, soffit), (UPPER_HALF_WALL, soffit)),
-                        ring((EAVES_OUT, EAVES_LEVEL), (EAVES_OUT, soffit))]),
-        "terracotta": ring((-OUTER, ridge), (EAVES_OUT, EAVES_LEVEL)),
+        "stone": merged(
+            [
+                lathe(profile, 10),
+                box((-0.075, 0, -0.075), (0.075, 0.05, 0.075), "-y"),
+                box((-0.068, 0.57, -0.068), (0.068, 0.62, 0.068), "+y"),
+            ]
+        )
     }
-
-
-def without_south(wall):
-    """A wall that runs round the court, less its stretch at -z."""
-    south = (wall.positions[wall.triangles][:, :, 2] < 0).all(axis=1)
-    return Mesh(wall.positions, wall.normals, wall.uvs, wall.triangles[~south])
-
-
-def south_wall(half_x):
-    """The lower south wall above the dado, with a window on the axis of each long arcade; its frame is the side's."""
-    reach, centre = half_x + BAY, half_x + BAY / 2
-    sill = DADO + 0.07
-    inside, outside = [], []
-    for faces, end, level in ((inside, reach, sill), (outside, half_x + OUTER, 0.0)):
-        faces.append(quad((-half_x, level, 0), (half_x, level, 0), (half_x, UPPER_FLOOR, 0), (-half_x, UPPER_FLOOR, 0)))
-        for side in (-1, 1):
-            head = arch_wall(BAY / 2, WINDOW_RADIUS, WINDOW_SPRINGING, UPPER_FLOOR, 20)
-            faces.append(head.moved(side * centre, 0, 0))
-            jambs = [(-BAY / 2, -WINDOW_RADIUS, level), (WINDOW_RADIUS, BAY / 2, level)]
-            if level < sill:
-                jambs.append((-WINDOW_RADIUS, WINDOW_RADIUS, level))
-            for x0, x1, low in jambs:
-                top = sill if x0 < 0 < x1 else WINDOW_SPRINGING
-                faces.append(quad((x0, low, 0), (x1, low, 0), (x1, top, 0), (x0, top, 0)).moved(side * centre, 0, 0))
-            if end > reach:
-                x0, x1 = sorted((side * reach, side * end))
-                faces.append(quad((x0, 0, 0), (x1, 0, 0), (x1, UPPER_FLOOR, 0), (x0, UPPER_FLOOR, 0)))
-    reveals, bars = [], []
-    r, top = WINDOW_RADIUS, WINDOW_SPRINGING
-    for side in (-1, 1):
-        reveal = [arch_sweep(r, top, [[(0, -OUTER), (0, -BAY)]], 20), archivolt(r, top, -BAY, 0.16, 20),
-                  quad((-r, sill, -BAY), (-r, sill, -OUTER), (-r, top, -OUTER), (-r, top, -BAY)),
-                  quad((r, sill, -OUTER), (r, sill, -BAY), (r, top, -BAY), (r, top, -OUTER)),
-                  quad((-r, sill, -BAY), (r, sill, -BAY), (r, sill, -OUTER), (-r, sill, -OUTER))]
-        for edge in (-1, 1):
-            x0, x1 = sorted((edge * r, edge * (r + 0.16)))
-            reveal.append(box((x0, sill, -BAY - 0.01), (x1, top, -BAY + 0.045), "-z -y"))
-        reveals += [m.moved(side * centre, 0, 0) for m in reveal]
-        grille = [box((x - 0.012, sill, -OUTER + 0.1), (x + 0.012, top + np.sqrt(r * r - x * x), -OUTER + 0.124), "-y +y")
-                  for x in (-0.45, -0.27, -0.09, 0.09, 0.27, 0.45)]
-        grille += [box((-r, y - 0.012, -OUTER + 0.09), (r, y + 0.012, -OUTER + 0.098), "-x +x") for y in (1.5, 1.9, 2.25)]
-        bars += [m.moved(side * centre, 0, 0) for m in grille]
-    return {"plaster": merged([m.moved(0, 0, -BAY) for m in inside] + [m.turned_y(np.pi).moved(0, 0, -OUTER) for m in outside]),
-            "stone": merged(reveals), "iron": merged(bars)}
-
-
-def beams(half_length, spacing):
-    """Ceiling beams of one side of the gallery and the rafter tails under its eaves, along x."""
-    wood = []
-    count = int(2 * half_length / spacing)
-    for k in range(count):
-        x = (k - (count - 1) / 2) * spacing
-        wood.append(box((x - 0.07, CEILING - 0.2, -BAY), (x + 0.07, CEILING, -UPPER_HALF_WALL), "+y -z +z"))
-    tails = int(2 * (half_length - EAVES_OUT) / 0.4)
-    for k in range(tails):
-        x = (k - (tails - 1) / 2) * 0.4
-        wood.append(box((x - 0.045, EAVES_LEVEL - 0.2, UPPER_HALF_WALL + 0.2), (x + 0.045, EAVES_LEVEL - 0.1, EAVES_OUT - 0.08), "+y -z"))
-    return {"wood": merged(wood)}
-
-
-def dentils(half_length):
-    """The rows of small blocks under the string course and the cornice of one side, along x."""
-    blocks = []
-    for level, z, size in ((UPPER_FLOOR - 0.22, HALF_WALL + 0.04, 0.085), (CEILING - 0.05, UPPER_HALF_WALL + 0.03, 0.075)):
-        count = int(2 * (half_length - z - 0.1) / (2 * size))
-        for k in range(count):
-            x = (k - (count - 1) / 2) * 2 * size
-            blocks.append(box((x - size / 2, level - 0.01, z - 0.01), (x + size / 2, level + 0.08, z + size * 0.9), "-z +y"))
-    return {"stone": merged(blocks)}
-
-
-TILE_COUNT = 11
-
-
-def tile_column(count):
-    """The uppermost `count` roof tiles of one column, ridge to eaves; the slope's own frame is that of the bay."""
-    tiles = []
-    run = (EAVES_OUT + OUTER) / TILE_COUNT
-    angle = np.linspace(np.pi, 0, 5)
-    ridge = EAVES_LEVEL + (EAVES_OUT + OUTER) * ROOF_PITCH
-    for k in range(count):
-        z0, z1 = -OUTER + run * k, -OUTER + run * (k + 1) + 0.04
-        rings = []
-        for z, radius, lift in ((z0, 0.070, -0.012), (z1, 0.092, 0.012), (z1, 0.074, 0.010)):
-            y = ridge - (z + OUTER) * ROOF_PITCH
-            rings.append(np.stack([radius * np.cos(angle), y + lift + radius * np.sin(angle), np.full_like(angle, z)], axis=1))
-        tiles.append(surface(np.stack([rings[1], rings[0]], axis=1)))
-        tiles.append(surface(np.stack([rings[2], rings[1]], axis=1)))
-    return {"terracotta": merged(tiles)}
 
 
 def door():
@@ -366,5 +328,8 @@ def door():
         x0, x1 = sorted((side * half, side * (half + 0.2)))
         frame.append(box((x0, 0, -0.01), (x1, spring, 0.055), "-z -y"))
         x0, x1 = sorted((side * (half - 0.02), side * (half + 0.24)))
-        frame += [box((x0, 0, -0.01), (x1, 0.2, 0.085), "-z -y"), box((x0, spring - 0.09, -0.01), (x1, spring, 0.085), "-z")]
+        frame += [
+            box((x0, 0, -0.01), (x1, 0.2, 0.085), "-z -y"),
+            box((x0, spring - 0.09, -0.01), (x1, spring, 0.085), "-z"),
+        ]
     return {"wood": merged([leaf] + panels), "stone": merged(frame + [keystone(half, spring, 0.08, 0.0)])}

@@ -33,7 +33,7 @@ def load(path):
     require(json_kind == b"JSON" and json_size % 4 == 0, "JSON chunk")
     size, kind = struct.unpack_from("<I4s", data, 20 + json_size)
     require(kind == b"BIN\0" and size % 4 == 0 and 28 + json_size + size == total, "BIN chunk")
-    return json.loads(data[20:20 + json_size]), data[28 + json_size:]
+    return json.loads(data[20 : 20 + json_size]), data[28 + json_size :]
 
 
 def read_accessor(gltf, binary, index):
@@ -43,21 +43,27 @@ def read_accessor(gltf, binary, index):
     dtype = np.dtype(COMPONENT[accessor["componentType"]])
     width = WIDTH[accessor["type"]]
     require(view["byteOffset"] % 4 == 0, f"bufferView of accessor {index} is not aligned")
-    require(view["byteLength"] == accessor["count"] * width * dtype.itemsize, f"accessor {index} does not fill its view")
+    require(
+        view["byteLength"] == accessor["count"] * width * dtype.itemsize, f"accessor {index} does not fill its view"
+    )
     require(view["byteOffset"] + view["byteLength"] <= len(binary), f"accessor {index} runs past the end")
     return np.frombuffer(binary, dtype, accessor["count"] * width, view["byteOffset"]).reshape(-1, width)
 
 
 def check_primitive(gltf, binary, primitive, name):
     """Raises Broken; returns the number of triangles."""
-    attributes = {key: read_accessor(gltf, binary, index).astype(float) for key, index in primitive["attributes"].items()}
+    attributes = {
+        key: read_accessor(gltf, binary, index).astype(float) for key, index in primitive["attributes"].items()
+    }
     position, normal = attributes["POSITION"], attributes["NORMAL"]
     bounds = gltf["accessors"][primitive["attributes"]["POSITION"]]
     for key, values in attributes.items():
         require(len(values) == len(position), f"{name}: {key} has another length than POSITION")
         require(np.isfinite(values).all(), f"{name}: {key} is not finite")
-    require((position.min(axis=0) == bounds["min"]).all() and (position.max(axis=0) == bounds["max"]).all(),
-            f"{name}: bounds of POSITION")
+    require(
+        (position.min(axis=0) == bounds["min"]).all() and (position.max(axis=0) == bounds["max"]).all(),
+        f"{name}: bounds of POSITION",
+    )
     require(np.abs(np.linalg.norm(normal, axis=1) - 1).max() < 1e-5, f"{name}: normals are not unit")
     if "TANGENT" in attributes:
         tangent = attributes["TANGENT"]

@@ -28,7 +28,7 @@ CAMERA_POSITION = (278.0, 273.0, -800.0)
 FOCAL_LENGTH, FILM_HEIGHT = 0.035, 0.025
 
 BELOW_CEILING = 1.8  # mm, so that the light stands clear of the ceiling
-CANDELA = 300.0      # 1000 lux on the floor straight below
+CANDELA = 300.0  # 1000 lux on the floor straight below
 CONE = np.radians([25.0, 65.0])
 
 
@@ -45,18 +45,29 @@ def block(top):
 
 def build():
     glb = gltf.Glb("cornell", "Earthshine authors; measurements by the Cornell Program of Computer Graphics")
-    white, red, green = (glb.add_material(name, linear_rec709(spectrum))
-                         for name, spectrum in (("white", WHITE), ("red", RED), ("green", GREEN)))
+    white, red, green = (
+        glb.add_material(name, linear_rec709(spectrum))
+        for name, spectrum in (("white", WHITE), ("red", RED), ("green", GREEN))
+    )
     for name, shape, material in (
-            ("floor", face(FLOOR), white), ("ceiling", face(CEILING), white), ("back_wall", face(BACK_WALL), white),
-            ("right_wall", face(RIGHT_WALL), green), ("left_wall", face(LEFT_WALL), red),
-            ("short_block", block(SHORT_BLOCK_TOP), white), ("tall_block", block(TALL_BLOCK_TOP), white)):
+        ("floor", face(FLOOR), white),
+        ("ceiling", face(CEILING), white),
+        ("back_wall", face(BACK_WALL), white),
+        ("right_wall", face(RIGHT_WALL), green),
+        ("left_wall", face(LEFT_WALL), red),
+        ("short_block", block(SHORT_BLOCK_TOP), white),
+        ("tall_block", block(TALL_BLOCK_TOP), white),
+    ):
         glb.add_node(name, mesh=glb.add_mesh(name, [(shape, material)]))
 
     position = np.mean(LUMINAIRE, axis=0) - (0.0, BELOW_CEILING, 0.0)
-    glb.add_node("spot", light=glb.add_light("spot", "spot", CANDELA, cone=CONE.tolist()),
-                 translation=position * METRES, rotation=gltf.look_rotation((0, -1, 0), up=(0, 0, 1)))
+    glb.add_node(
+        "spot",
+        light=glb.add_light("spot", "spot", CANDELA, cone=CONE.tolist()),
+        translation=position * METRES,
+        rotation=gltf.look_rotation((0, -1, 0), up=(0, 0, 1)),
+    )
     vertical_fov = 2 * np.arctan(FILM_HEIGHT / 2 / FOCAL_LENGTH)
-    glb.add_node("camera", camera=glb.add_camera("camera", float(vertical_fov), 1.0, 0.1, 10.0),
-                 translation=np.array(CAMERA_POSITION) * METRES, rotation=gltf.look_rotation((0, 0, 1)))
+    position = np.array(CAMERA_POSITION) * METRES
+    glb.place_camera("cornell", vertical_fov, 1.0, 0.1, 10.0, position, position + (0, 0, 1))
     return glb

@@ -59,12 +59,15 @@ class Glb:
     def _add_indices(self, triangles, vertex_count):
         wide = vertex_count > 65535
         data = np.ascontiguousarray(triangles, dtype="<u4" if wide else "<u2")
-        return self._add("accessors", {
-            "bufferView": self._add_view(data.tobytes(), ELEMENT_ARRAY_BUFFER),
-            "componentType": UINT32 if wide else UINT16,
-            "count": int(data.size),
-            "type": "SCALAR",
-        })
+        return self._add(
+            "accessors",
+            {
+                "bufferView": self._add_view(data.tobytes(), ELEMENT_ARRAY_BUFFER),
+                "componentType": UINT32 if wide else UINT16,
+                "count": int(data.size),
+                "type": "SCALAR",
+            },
+        )
 
     def add_image(self, name, data, mime_type):
         """Embeds an encoded picture; `data` are its bytes."""
@@ -87,8 +90,15 @@ class Glb:
             info["extensions"] = {"KHR_texture_transform": transform}
         return info
 
-    def add_material(self, name, color=(1.0, 1.0, 1.0), color_texture=None, normal_texture=None, double_sided=False,
-                     alpha_cutoff=None):
+    def add_material(
+        self,
+        name,
+        color=(1.0, 1.0, 1.0),
+        color_texture=None,
+        normal_texture=None,
+        double_sided=False,
+        alpha_cutoff=None,
+    ):
         """A Lambertian surface: `color` is linear Rec. 709 and multiplies the picture; textures are texture_info."""
         pbr = {"baseColorFactor": list(color) + [1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0}
         if color_texture:
@@ -103,7 +113,7 @@ class Glb:
         return self._add("materials", material)
 
     def add_mesh(self, name, parts):
-        """`parts`: pairs of a mesh.Mesh and a material index; tangents are written where the material has a normal map."""
+        """`parts`: pairs of a mesh.Mesh and a material index. Tangents are written where there is a normal map."""
         primitives = []
         for mesh, material in parts:
             attributes, indices = self._add_geometry(mesh, "normalTexture" in self.json["materials"][material])
@@ -114,8 +124,10 @@ class Glb:
         """The accessors of a mesh; those of one that was added before serve again."""
         key = (id(mesh), with_tangents)
         if key not in self.accessors_of:
-            attributes = {"POSITION": self._add_attribute(mesh.positions, bounds=True),
-                          "NORMAL": self._add_attribute(mesh.normals)}
+            attributes = {
+                "POSITION": self._add_attribute(mesh.positions, bounds=True),
+                "NORMAL": self._add_attribute(mesh.normals),
+            }
             if mesh.uvs is not None:
                 attributes["TEXCOORD_0"] = self._add_attribute(mesh.uvs)
             if with_tangents:
@@ -123,13 +135,22 @@ class Glb:
             self.accessors_of[key] = (mesh, attributes, self._add_indices(mesh.triangles, len(mesh.positions)))
         return self.accessors_of[key][1:]
 
-    def add_camera(self, name, vertical_fov, aspect, near, far):
-        """A perspective camera; `vertical_fov` in radians, planes in metres."""
-        return self._add("cameras", {"name": name, "type": "perspective", "perspective": {
-            "yfov": vertical_fov, "aspectRatio": aspect, "znear": near, "zfar": far}})
+    def place_camera(self, name, vertical_fov, aspect, near, far, position, target):
+        """A perspective camera at `position`, looking at `target`; `vertical_fov` in radians, planes in metres."""
+        camera = self._add(
+            "cameras",
+            {
+                "name": name,
+                "type": "perspective",
+                "perspective": {"yfov": float(vertical_fov), "aspectRatio": float(aspect), "znear": near, "zfar": far},
+            },
+        )
+        return self.add_node(
+            f"camera.{name}", camera=camera, translation=position, rotation=look_rotation(np.subtract(target, position))
+        )
 
     def add_light(self, name, kind, intensity, color=(1.0, 1.0, 1.0), cone=None):
-        """kind: "directional" (intensity in lux) or "spot" (candela, with `cone` = inner and outer half angle, radians)."""
+        """`kind`: "directional" (lux) or "spot" (candela; `cone`: inner and outer half angle in radians)."""
         self.extensions.add("KHR_lights_punctual")
         light = {"name": name, "type": kind, "color": list(color), "intensity": intensity}
         if cone:
@@ -159,8 +180,10 @@ class Glb:
 
     def triangle_count(self):
         """Triangles drawn, over all instances."""
-        per_mesh = [sum(self.json["accessors"][p["indices"]]["count"] // 3 for p in m["primitives"])
-                    for m in self.json["meshes"]]
+        per_mesh = [
+            sum(self.json["accessors"][p["indices"]]["count"] // 3 for p in m["primitives"])
+            for m in self.json["meshes"]
+        ]
         return sum(per_mesh[n["mesh"]] for n in self.json["nodes"] if "mesh" in n)
 
     def write(self, path):

@@ -36,7 +36,7 @@ class Mesh:
         return self.transformed([[c, 0, s], [0, 1, 0], [-s, 0, c]])
 
     def tangents(self):
-        """Per-vertex tangents along +u with the handedness of glTF: bitangent = w * cross(normal, tangent) is up, -v."""
+        """Per-vertex tangents along +u, handedness as glTF: bitangent = w * cross(normal, tangent) points to -v."""
         p, t, tri = self.positions, self.uvs, self.triangles
         e1, e2 = p[tri[:, 1]] - p[tri[:, 0]], p[tri[:, 2]] - p[tri[:, 0]]
         d1, d2 = t[tri[:, 1]] - t[tri[:, 0]], t[tri[:, 2]] - t[tri[:, 0]]
@@ -62,9 +62,12 @@ def merged(meshes):
     """One mesh of many."""
     meshes = list(meshes)
     starts = np.cumsum([0] + [len(m.positions) for m in meshes[:-1]])
-    return Mesh(np.concatenate([m.positions for m in meshes]), np.concatenate([m.normals for m in meshes]),
-                np.concatenate([m.uvs for m in meshes]),
-                np.concatenate([m.triangles + start for m, start in zip(meshes, starts)]))
+    return Mesh(
+        np.concatenate([m.positions for m in meshes]),
+        np.concatenate([m.normals for m in meshes]),
+        np.concatenate([m.uvs for m in meshes]),
+        np.concatenate([m.triangles + start for m, start in zip(meshes, starts)]),
+    )
 
 
 def quad(a, b, c, d):
@@ -74,8 +77,9 @@ def quad(a, b, c, d):
     normal /= np.linalg.norm(normal)
     right = (corners[1] - corners[0]) / np.linalg.norm(corners[1] - corners[0])
     up = np.cross(normal, right)
-    return Mesh(corners, np.tile(normal, (4, 1)), np.column_stack([corners @ right, -(corners @ up)]),
-                [[0, 1, 2], [0, 2, 3]])
+    return Mesh(
+        corners, np.tile(normal, (4, 1)), np.column_stack([corners @ right, -(corners @ up)]), [[0, 1, 2], [0, 2, 3]]
+    )
 
 
 def box(low, high, open_faces=""):
@@ -139,7 +143,9 @@ def lathe(pieces, segments):
     widest = max(radius for piece in pieces for radius, _ in piece)
     for piece in pieces:
         radius, y = np.array(piece, dtype=float).T
-        points = np.stack([around[:, :1] * radius, np.broadcast_to(y, (segments + 1, len(y))), around[:, 1:] * radius], axis=2)
+        points = np.stack(
+            [around[:, :1] * radius, np.broadcast_to(y, (segments + 1, len(y))), around[:, 1:] * radius], axis=2
+        )
         length = np.concatenate([[0], np.cumsum(np.hypot(np.diff(radius), np.diff(y)))]) + y[0]
         u = np.linspace(0, 2 * np.pi * widest, segments + 1)
         meshes.append(surface(points, np.stack(np.meshgrid(u, -length, indexing="ij"), axis=2)))
@@ -161,9 +167,9 @@ def rectangle_moulding(half_x, half_z, pieces):
         for side in range(4):
             lengthwise, across = (half_x, half_z) if side % 2 == 0 else (half_z, half_x)
             along = lengthwise - offset
-            points = np.stack([
-                np.stack([-along, y, -(across - offset)], axis=1),
-                np.stack([along, y, -(across - offset)], axis=1)])
+            points = np.stack(
+                [np.stack([-along, y, -(across - offset)], axis=1), np.stack([along, y, -(across - offset)], axis=1)]
+            )
             length = np.concatenate([[0], np.cumsum(np.hypot(np.diff(offset), np.diff(y)))])
             uvs = np.stack([np.column_stack([-along, length]), np.column_stack([along, length])])
             meshes.append(surface(points, uvs).flipped().turned_y(-side * np.pi / 2))
@@ -181,8 +187,12 @@ def arch_wall(half_width, radius, springing, top, steps):
             k = 2 * column
             triangles += [(k - 2, k, k + 1), (k - 2, k + 1, k - 1)]
     positions = np.array(positions)
-    head = Mesh(positions, np.tile([0.0, 0.0, 1.0], (len(positions), 1)),
-                np.column_stack([positions[:, 0], -positions[:, 1]]), triangles)
+    head = Mesh(
+        positions,
+        np.tile([0.0, 0.0, 1.0], (len(positions), 1)),
+        np.column_stack([positions[:, 0], -positions[:, 1]]),
+        triangles,
+    )
     pier = quad((-half_width, springing, 0), (-radius, springing, 0), (-radius, top, 0), (-half_width, top, 0))
     other = quad((radius, springing, 0), (half_width, springing, 0), (half_width, top, 0), (radius, top, 0))
     return merged([head, pier, other])
@@ -196,7 +206,13 @@ def arch_sweep(radius, springing, pieces, steps):
     for piece in pieces:
         offset, z = np.array(piece, dtype=float).T
         r = radius + offset
-        points = np.stack([np.cos(angle)[:, None] * r, springing + np.sin(angle)[:, None] * r,
-                           np.broadcast_to(z, (steps + 1, len(z)))], axis=2)
+        points = np.stack(
+            [
+                np.cos(angle)[:, None] * r,
+                springing + np.sin(angle)[:, None] * r,
+                np.broadcast_to(z, (steps + 1, len(z))),
+            ],
+            axis=2,
+        )
         meshes.append(surface(points))
     return merged(meshes)

@@ -47,15 +47,17 @@ def build():
     glb.add_node("perpendicular.emitter", mesh=faces_up, translation=(2.0, 1.0, 0.0))
     glb.add_node("perpendicular.receiver", mesh=faces_x, translation=(1.5, 1.5, 0.0))
 
-    glb.add_node("sun", light=glb.add_light("sun", "directional", ILLUMINANCE), translation=(0.0, 4.0, 5.0),
-                 rotation=gltf.look_rotation(light_direction()))
+    glb.add_node(
+        "sun",
+        light=glb.add_light("sun", "directional", ILLUMINANCE),
+        translation=(0.0, 4.0, 5.0),
+        rotation=gltf.look_rotation(light_direction()),
+    )
 
-    wide = glb.add_camera("both", np.radians(34.0), 16 / 9, 0.05, 50.0)
-    near = glb.add_camera("one", np.radians(50.0), 1.0, 0.05, 50.0)
-    for name, camera, position, target in (
-            ("camera.both", wide, (5.4, -0.3, 2.4), (0.3, 1.0, 0.0)),
-            ("camera.parallel", near, (-2.0, 0.05, 1.7), (-2.0, 0.95, 0.0)),
-            ("camera.perpendicular", near, (3.6, 1.9, 0.4), (1.5, 1.5, 0.0))):
-        glb.add_node(name, camera=camera, translation=position,
-                     rotation=gltf.look_rotation(np.subtract(target, position)))
+    for name, vertical_fov, aspect, position, target in (
+        ("both", 34.0, 16 / 9, (5.4, -0.3, 2.4), (0.3, 1.0, 0.0)),
+        ("parallel", 50.0, 1.0, (-2.0, 0.05, 1.7), (-2.0, 0.95, 0.0)),
+        ("perpendicular", 50.0, 1.0, (3.6, 1.9, 0.4), (1.5, 1.5, 0.0)),
+    ):
+        glb.place_camera(name, np.radians(vertical_fov), aspect, 0.05, 50.0, position, target)
     return glb

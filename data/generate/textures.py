@@ -219,8 +219,8 @@ def leaves(size=512, count=34, seed=101):
         across = (dx * axis[1] - dy * axis[0]) / length
         half = 0.17 * np.sin(np.pi * np.clip(along, 0, 1) ** 0.8) ** 0.9
         inside = (along > 0) & (along < 1) & (np.abs(across) < half)
-        rib = 1 + 0.35 * np.exp(-(across / 0.012) ** 2) + 0.08 * np.cos(across * 120 + along * 30)
+        rib = 1 + 0.35 * np.exp(-((across / 0.012) ** 2)) + 0.08 * np.cos(across * 120 + along * 30)
         tone = mix((0.075, 0.17, 0.035), (0.20, 0.30, 0.07), rng.uniform()) * rng.uniform(0.85, 1.15)
-        color[inside] = (tone[None, :] * rib[inside][:, None] * (0.85 + 0.3 * along[inside][:, None]))
+        color[inside] = tone[None, :] * rib[inside][:, None] * (0.85 + 0.3 * along[inside][:, None])
         alpha[inside] = 1.0
     return np.dstack([srgb_bytes(color), np.round(alpha * 255).astype(np.uint8)])

@@ -29,9 +29,8 @@ void eraseBar() {
 void openConsole(Verbosity wanted) {
     verbosity = wanted;
     setLogSink([](LogLevel level, std::string_view message) {
-        const bool shown = level == LogLevel::Warning || (level == LogLevel::Info && verbosity != Verbosity::Quiet) ||
-                           verbosity == Verbosity::Verbose;
-        if (shown) complain(fmt::format("{}{}", level == LogLevel::Warning ? "warning: " : "", message));
+        if (verbosity == Verbosity::Quiet || (verbosity == Verbosity::Normal && level != LogLevel::Warning)) return;
+        complain(fmt::format("{}{}", level == LogLevel::Warning ? "warning: " : "", message));
     });
 }
 

@@ -6,7 +6,7 @@
 
 namespace earthshine::cli {
 
-/// How much is said on stderr. Warnings and failures are always.
+/// How much is said on stderr: failures only; warnings and progress too; everything.
 enum class Verbosity { Quiet, Normal, Verbose };
 
 /// Sends the library's log to stderr. Call it once, first.

@@ -35,11 +35,15 @@ void addDeviceOptions(Options& options, DeviceArguments& arguments) {
     });
 }
 
-ChosenDevice chooseDevice(const DeviceArguments& arguments) {
-    std::string why;
-    const DeviceCaps caps = selectDevice(arguments.spec, &why);
-    log(LogLevel::Info, fmt::format("device {}: {} ({}), {}", caps.index, caps.name, caps.platformName, why));
-    return {Device(caps, arguments.options), why};
+DeviceChoice chooseDevice(const DeviceArguments& arguments) {
+    DeviceChoice choice;
+    choice.caps = selectDevice(arguments.spec, &choice.why);
+    log(LogLevel::Info, fmt::format("device {}, {}", deviceTitle(choice.caps), choice.why));
+    return choice;
+}
+
+std::string deviceTitle(const DeviceCaps& caps) {
+    return fmt::format("{}: {} ({})", caps.index, caps.name, caps.platformName);
 }
 
 }  // namespace earthshine::cli

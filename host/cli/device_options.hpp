@@ -15,13 +15,16 @@ struct DeviceArguments {
 
 void addDeviceOptions(Options& options, DeviceArguments& arguments);
 
-/// An open device and the line on why it is this one.
-struct ChosenDevice {
-    Device device;
+/// The device that is meant, and one line on why.
+struct DeviceChoice {
+    DeviceCaps caps;
     std::string why;
 };
 
-/// Selects and opens the device, and logs the choice. Throws as selectDevice and Device.
-ChosenDevice chooseDevice(const DeviceArguments& arguments);
+/// Throws as selectDevice.
+DeviceChoice chooseDevice(const DeviceArguments& arguments);
+
+/// "0: NAME (PLATFORM)"
+std::string deviceTitle(const DeviceCaps& caps);
 
 }  // namespace earthshine::cli

@@ -58,6 +58,7 @@ void FrameTiming::addStep(const std::string& step, double ms) {
 
 void FrameTiming::clear() {
     *this = {};
+    isCold_ = false;
 }
 
 std::string FrameTiming::table() const {
@@ -67,6 +68,7 @@ std::string FrameTiming::table() const {
     text += row("all stages", deviceTotal_);
     text += fmt::format("\n{:<24}\n", "step (wall clock)");
     for (const auto& [name, series] : steps_) text += row(name, series);
+    if (isCold_) text += "\nThe first frame compiles and allocates; --frames 8 shows how long the later ones take.\n";
     return text;
 }
 

@@ -24,7 +24,7 @@ public:
     void addStages(const std::vector<StageTime>& times);  ///< also their sum, as deviceTotal
     void addStep(const std::string& step, double ms);
 
-    /// Forgets all so far: the first of several frames compiles and allocates.
+    /// Forgets all so far, when the first of several frames is over: it compiles and allocates.
     void clear();
 
     const std::vector<std::pair<std::string, Series>>& stages() const { return stages_; }
@@ -37,6 +37,7 @@ public:
 private:
     std::vector<std::pair<std::string, Series>> stages_, steps_;
     Series deviceTotal_;
+    bool isCold_ = true;
 };
 
 /// Milliseconds since it was made.

@@ -30,6 +30,7 @@ void computeIndirect(const IndirectArguments& arguments) {
     OutputSet outputs;
     const FrameFiles files(arguments.files, outputs);
     validate(arguments.settings);
+    const DeviceChoice choice = chooseDevice(arguments.device);
 
     const Stopwatch load;
     const FrameImages images = loadInputs(arguments.folder);
@@ -37,8 +38,8 @@ void computeIndirect(const IndirectArguments& arguments) {
     const FrameInputs frame = images.inputs();
     files.check(frame);
 
-    const ChosenDevice chosen = chooseDevice(arguments.device);
-    Pipeline pipeline(chosen.device);
+    const Device device(choice.caps, arguments.device.options);
+    Pipeline pipeline(device);
     FrameTiming timing;
     {
         Progress progress("indirect light");
@@ -59,11 +60,13 @@ void computeIndirect(const IndirectArguments& arguments) {
     report["size"] = {images.depth.extent().widthPx, images.depth.extent().heightPx};
     report["lights"] = frame.lights.size();
     report["loadMs"] = loadMs;
-    addFrame(report, {chosen.device, chosen.why, arguments.settings, timing, arguments.frameCount, pipeline.exposure(),
+    addFrame(report, {device, choice.why, arguments.settings, timing, arguments.frameCount, pipeline.exposure(),
                       nonFinite, paths});
     files.writeReport(readableJson(report));
     outputs.commit();
-    fmt::print("{}\n", timing.table());
+    fmt::print("inputs      {}: {}x{}, {} lights\n", arguments.folder, images.depth.extent().widthPx,
+               images.depth.extent().heightPx, frame.lights.size());
+    fmt::print("OpenCL      {}\n\n{}\n", deviceTitle(choice.caps), timing.table());
     for (const auto& path : paths) fmt::print("wrote {}\n", path.string());
 }
 

@@ -17,8 +17,8 @@ int runProgram(int argc, char** argv) {
     bool verbose = false, quiet = false;
     Program program("earthshine", EARTHSHINE_VERSION,
                     "Real-time indirect light from reflective shadow maps, on any OpenCL device");
-    program.options().flag("-v,--verbose", verbose, "Say more of what is done");
-    program.options().flag("-q,--quiet", quiet, "Say only what goes wrong");
+    program.options().flag("-v,--verbose", verbose, "Say what is done");
+    program.options().flag("-q,--quiet", quiet, "Say only what fails");
     addRender(program.options());
     addIndirect(program.options());
     addDevices(program.options());

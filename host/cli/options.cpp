@@ -113,12 +113,26 @@ bool Program::parse(int argc, const char* const* argv) {
     } catch (const CLI::Success& e) {  // --help and --version
         impl_->app->exit(e);
         return false;
+    } catch (const CLI::ExtrasError&) {
+        throw UsageError(fmt::format("there is no option or place for '{}'; see --help", remaining()));
+    } catch (const CLI::ArgumentMismatch&
+                 e) {  // "--out: At Most 1 required but received 2", "--out: 1 required FILE missing"
+        const std::string text = e.what();
+        throw UsageError(
+            fmt::format("{}: {}", text.substr(0, text.find(':')),
+                        text.find("At Most") == std::string::npos ? "needs a value" : "given more than once"));
     } catch (const CLI::RequiredError& e) {
-        throw UsageError(fmt::format("{}; see earthshine --help", oneLine(e.what())));
+        if (!remaining().empty()) throw UsageError(fmt::format("there is no command '{}'; see --help", remaining()));
+        throw UsageError(fmt::format("{}; see --help", oneLine(e.what())));
     } catch (const CLI::ParseError& e) {
         throw UsageError(oneLine(e.what()));
     }
     return true;
+}
+
+std::string Program::remaining() const {
+    const std::vector<std::string> words = impl_->app->remaining(true);
+    return words.empty() ? "" : words.front();
 }
 
 void Program::run() const {

@@ -58,6 +58,8 @@ public:
     void run() const;
 
 private:
+    std::string remaining() const;  ///< the first argument that nothing takes
+
     std::unique_ptr<Options::Impl> impl_;
     Options options_;
 };

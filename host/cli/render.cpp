@@ -59,7 +59,11 @@ raster::Scene loadScene(const std::string& file) {
     log(LogLevel::Info,
         fmt::format("{}: {} triangles, {} materials, {} textures, {} lights", file, scene.triangleCount(),
                     scene.materials.size(), scene.textures.size(), scene.lights.size()));
-    for (const std::string& note : scene.notes) log(LogLevel::Warning, fmt::format("{}: {}", file, note));
+    for (const std::string& note : scene.notes) log(LogLevel::Info, fmt::format("{}: {}", file, note));
+    if (!scene.notes.empty())
+        log(LogLevel::Warning,
+            fmt::format("{}: {} things in it are not drawn as it asks; --verbose and --report list them", file,
+                        scene.notes.size()));
     return scene;
 }
 
@@ -70,6 +74,10 @@ void renderScene(const RenderArguments& arguments) {
     const auto inputsFolder =
         arguments.saveInputs.empty() ? std::filesystem::path() : outputs.addFolder(arguments.saveInputs, kInputsFile);
     validate(arguments.settings);
+    const DeviceChoice choice = chooseDevice(arguments.device);
+
+    // The GL context outlives everything of OpenCL's: drivers that share objects between the two insist on it.
+    const std::unique_ptr<raster::GlContext> context = raster::createContext(arguments.raster.gl);
 
     const Stopwatch load;
     const raster::Scene scene = loadScene(arguments.scene);
@@ -77,11 +85,9 @@ void renderScene(const RenderArguments& arguments) {
     const std::vector<Light> lights = raster::fitLights(scene, {arguments.raster.sun});
     const double loadMs = load.ms();
 
-    // The GL context outlives everything of OpenCL's: drivers that share objects between the two insist on it.
-    const std::unique_ptr<raster::GlContext> context = raster::createContext(arguments.raster.gl);
     raster::SceneRenderer renderer(*context, scene);
-    const ChosenDevice chosen = chooseDevice(arguments.device);
-    Pipeline pipeline(chosen.device);
+    const Device device(choice.caps, arguments.device.options);
+    Pipeline pipeline(device);
     log(LogLevel::Info, "transport host: textures are read back into memory that OpenCL uses in place");
 
     FrameImages images;
@@ -127,11 +133,15 @@ void renderScene(const RenderArguments& arguments) {
         {"platform", gl.platform}, {"vendor", gl.vendor}, {"renderer", gl.renderer}, {"version", gl.version}};
     report["transport"] = "host";
     report["loadMs"] = loadMs;
-    addFrame(report, {chosen.device, chosen.why, arguments.settings, timing, arguments.frameCount, pipeline.exposure(),
+    addFrame(report, {device, choice.why, arguments.settings, timing, arguments.frameCount, pipeline.exposure(),
                       nonFinite, paths});
     files.writeReport(readableJson(report));
     outputs.commit();
-    fmt::print("{}\n", timing.table());
+    fmt::print("scene       {}: {} triangles, {} materials, {} textures\n", arguments.scene, scene.triangleCount(),
+               scene.materials.size(), scene.textures.size());
+    fmt::print("OpenGL      {}: {}\n", gl.platform, gl.renderer);
+    fmt::print("OpenCL      {}\n", deviceTitle(choice.caps));
+    fmt::print("transport   host\n\n{}\n", timing.table());
     for (const auto& path : paths) fmt::print("wrote {}\n", path.string());
 }
 

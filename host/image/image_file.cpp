@@ -108,6 +108,7 @@ void writeExr(const std::filesystem::path& path, std::span<const Layer> layers, 
     spec.nchannels = int(spec.channelnames.size());
     spec.alpha_channel = spec.z_channel = -1;
     spec.attribute("compression", "zip");
+    spec.attribute("DateTime", "");  // else the clock's, and the same picture would never be the same file
     spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), kRec709Chromaticities);
     for (const auto& [name, value] : attributes)
         std::visit([&, &key = name](const auto& v) { spec.attribute(key, v); }, value);

@@ -1,0 +1,40 @@
+#pragma once
+// Runs the real program, as a shell would.
+
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace earthshine::test {
+
+struct Result {
+    int exitCode = -1;  ///< minus the signal's number if one ended it
+    std::string out, err;
+};
+
+using Arguments = std::vector<std::string>;
+
+/// A program that runs; its output goes into files of its own.
+class Process {
+public:
+    /// `environment` adds "NAME=value" to this process's own.
+    explicit Process(const Arguments& arguments, const std::vector<std::string>& environment = {});
+    ~Process();  ///< kills it if it still runs
+    Process(const Process&) = delete;
+    Process& operator=(const Process&) = delete;
+
+    void signal(int number) const;
+    Result wait();
+
+private:
+    std::string read(int file) const;
+
+    pid_t pid_ = -1;
+    int out_ = -1, err_ = -1;
+};
+
+/// Runs `earthshine` with these arguments to its end.
+Result runEarthshine(const Arguments& arguments, const std::vector<std::string>& environment = {});
+
+}  // namespace earthshine::test

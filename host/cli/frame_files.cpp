@@ -16,8 +16,6 @@ namespace earthshine::cli {
 
 namespace {
 
-constexpr float kDifferenceGain = 2.0f;  // so that small changes show; where it clips, the other panels tell
-
 const std::vector<std::string> kRgb{"R", "G", "B"}, kXyz{"X", "Y", "Z"}, kZ{"Z"};
 
 void requireEnding(const char* option, const std::string& path, std::initializer_list<const char*> endings) {
@@ -141,12 +139,11 @@ std::vector<NonFiniteLayer> FrameFiles::writePictures(Pipeline& pipeline, const 
     if (sheet_) {
         const HostImage direct = pipeline.toDisplay(pipeline.read(Output::Direct).view());
         const HostImage indirect = pipeline.toDisplay(pipeline.read(Output::Indirect).view());
-        const HostImage difference = displayDifference(both.view(), direct.view(), kDifferenceGain);
-        const Panel panels[] = {
-            {"direct", direct.view()},
-            {"indirect", indirect.view()},
-            {"both", both.view()},
-            {fmt::format("difference (both - direct) x{}", int(kDifferenceGain)), difference.view()}};
+        const HostImage difference = displayDifference(both.view(), direct.view(), 1.0f);
+        const Panel panels[] = {{"direct", direct.view()},
+                                {"indirect", indirect.view()},
+                                {"both", both.view()},
+                                {"difference (both - direct)", difference.view()}};
         writePng(sheet_->temporary, contactSheet(panels, 2).view());
     }
     return nonFinite;

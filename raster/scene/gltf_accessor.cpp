@@ -95,19 +95,25 @@ float toFloat(T value, bool normalized) {
     }
 }
 
-}  // namespace
-
-void GltfContext::note(const std::string& line) const {
-    if (std::find(scene.notes.begin(), scene.notes.end(), line) == scene.notes.end()) scene.notes.push_back(line);
+/// Stops a file of few bytes whose accessors are read very often, or stand for very many zeros.
+void countElements(const GltfContext& context, int accessor, std::size_t most, const std::string& place) {
+    const std::size_t count = context.model.accessors[std::size_t(accessor)].count;
+    if (count > most) {
+        context.file.fail(place, fmt::format("accessors[{}] has {} elements; {} is the most", accessor, count, most));
+    }
+    context.elementsRead += count;
+    if (context.elementsRead > gltf_limits::kElements) {
+        context.file.fail(place,
+                          fmt::format("the scene reads more than {} elements of accessors", gltf_limits::kElements));
+    }
 }
+
+}  // namespace
 
 std::vector<float> readFloats(const GltfContext& context, int accessor, int components, float fill,
                               const std::string& place) {
     const tinygltf::Accessor& of = context.model.accessors[std::size_t(accessor)];
-    if (of.count > gltf_limits::kVertices) {
-        context.file.fail(place, fmt::format("accessors[{}] has {} elements; {} is the most", accessor, of.count,
-                                             gltf_limits::kVertices));
-    }
+    countElements(context, accessor, gltf_limits::kVertices, place);
     const auto width = std::size_t(components);
     const std::size_t given = std::min(width, std::size_t(tinygltf::GetNumComponentsInType(std::uint32_t(of.type))));
     std::vector<float> values(of.count * width, fill);
@@ -130,10 +136,7 @@ std::vector<float> readFloats(const GltfContext& context, int accessor, int comp
 std::vector<std::uint32_t> readIndices(const GltfContext& context, int accessor, std::size_t vertexCount,
                                        const std::string& place) {
     const tinygltf::Accessor& of = context.model.accessors[std::size_t(accessor)];
-    if (of.count > gltf_limits::kIndices) {
-        context.file.fail(place, fmt::format("accessors[{}] has {} elements; {} is the most", accessor, of.count,
-                                             gltf_limits::kIndices));
-    }
+    countElements(context, accessor, gltf_limits::kIndices, place);
     std::vector<std::uint32_t> values(of.count, 0);
     withComponentType(of.componentType, [&](auto zero) {
         using T = decltype(zero);

@@ -56,12 +56,11 @@ Bytes dataUriBytes(const std::string& uri) {
 
 }  // namespace
 
-std::string printable(std::string_view text) {
-    constexpr std::size_t kLongest = 80;
-    std::string out(text.substr(0, kLongest));
+std::string printable(std::string_view text, std::size_t longest) {
+    std::string out(text.substr(0, longest));
     std::replace_if(
         out.begin(), out.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-    return text.size() > kLongest ? out + "..." : out;
+    return text.size() > longest ? out + "..." : out;
 }
 
 GltfFile::GltfFile(const fs::path& path) : name_(path.filename().string()) {
@@ -74,6 +73,9 @@ GltfFile::GltfFile(const fs::path& path) : name_(path.filename().string()) {
         splitBinary(bytes);
     } else {
         json_.assign(bytes.begin(), bytes.end());
+    }
+    if (json_.size() > gltf_limits::kJsonBytes) {
+        fail("", fmt::format("has {} B of JSON; {} B is the most", json_.size(), gltf_limits::kJsonBytes));
     }
 }
 
@@ -107,6 +109,7 @@ void GltfFile::splitBinary(const Bytes& bytes) {
         if (chunk == 0) {
             if (type != kJson) fail(place, "is not JSON");
             json_.assign(begin, begin + std::ptrdiff_t(size));
+            json_.erase(json_.find_last_not_of('\0') + 1);  // padding of old exporters; it should be spaces
         } else if (type == kBin) {
             binaryChunk_.assign(begin, begin + std::ptrdiff_t(size));
         }

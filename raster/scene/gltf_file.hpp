@@ -16,17 +16,20 @@ using Bytes = std::vector<unsigned char>;
 /// could ask for all of the memory.
 namespace gltf_limits {
 inline constexpr std::uintmax_t kFileBytes = 0x7fffffff;                ///< one file; tinygltf counts in int
-inline constexpr std::uintmax_t kTotalBytes = std::uintmax_t(1) << 33;  ///< all files of a scene
-inline constexpr std::size_t kVertices = std::size_t(1) << 25;          ///< all meshes of a scene
+inline constexpr std::uintmax_t kTotalBytes = std::uintmax_t(1) << 32;  ///< all files of a scene
+inline constexpr std::size_t kJsonBytes = std::size_t(1) << 29;         ///< parsed, it takes up to 10 times as much
+inline constexpr int kJsonDepth = 64;                                   ///< glTF itself needs about 10
+inline constexpr std::size_t kVertices = std::size_t(1) << 26;          ///< all meshes of a scene
 inline constexpr std::size_t kIndices = std::size_t(1) << 27;           ///< all meshes of a scene
+inline constexpr std::size_t kInstances = std::size_t(1) << 22;         ///< many nodes may share a mesh of many parts
+inline constexpr std::size_t kElements = std::size_t(1) << 30;          ///< that accessors give, morph targets included
 inline constexpr int kImageSidePx = 16384;                              ///< what current GPUs can hold
 inline constexpr std::size_t kImageBytes = std::size_t(1) << 30;        ///< one image, decoded
 inline constexpr std::size_t kTextureBytes = std::size_t(1) << 33;      ///< all textures of a scene, decoded
-inline constexpr int kJsonDepth = 64;                                   ///< glTF itself needs about 10
 }  // namespace gltf_limits
 
-/// `text` from a file, fit for a message of one line: without control characters, shortened if it is long.
-std::string printable(std::string_view text);
+/// `text` from a file, fit for a message of one line: without control characters, cut after `longest` bytes.
+std::string printable(std::string_view text, std::size_t longest = 80);
 
 /// A .gltf or .glb file, told apart by its content.
 class GltfFile {

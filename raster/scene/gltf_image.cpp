@@ -33,9 +33,9 @@ std::optional<PictureInfo> pngInfo(std::span<const unsigned char> bytes) {
 std::optional<PictureInfo> jpegInfo(std::span<const unsigned char> bytes) {
     if (bytes.size() < 4 || bytes[0] != 0xff || bytes[1] != 0xd8) return {};
     std::size_t offset = 2;
-    while (offset + 9 <= bytes.size() && bytes[offset] == 0xff) {
+    while (offset + 9 <= bytes.size()) {
         const unsigned marker = bytes[offset + 1];
-        if (marker == 0xff) {  // padding
+        if (bytes[offset] != 0xff || marker == 0xff) {  // padding
             ++offset;
             continue;
         }

@@ -1,5 +1,6 @@
 #include "raster/scene/gltf_loader.hpp"
 
+#include <cmath>
 #include <new>
 #include <stdexcept>
 
@@ -26,7 +27,7 @@ json parseJson(const GltfFile& file) {
     try {
         return json::parse(file.json(), limitDepth);
     } catch (const json::exception& error) {
-        file.fail("", fmt::format("is not JSON: {}", printable(error.what())));
+        file.fail("", fmt::format("is not JSON: {}", printable(error.what(), 200)));
     }
 }
 
@@ -50,13 +51,11 @@ std::vector<Bytes> readBuffers(const json& document, GltfFile& file) {
     return buffers;
 }
 
-/// What remains for tinygltf: everything but bytes and pictures, which it would read from anywhere and unchecked. Its
-/// doors to the disk are shut as well.
-tinygltf::Model parseModel(const json& document, const GltfFile& file) {
-    json rest = document;
-    rest.erase("buffers");
-    rest.erase("images");
-    const std::string text = rest.dump();
+/// Leaves to tinygltf what we use of the document but bytes and pictures, which it would read from anywhere and
+/// unchecked. Its doors to the disk are shut as well.
+tinygltf::Model parseModel(json document, const GltfFile& file) {
+    for (const char* name : {"buffers", "images", "animations", "skins", "extras"}) document.erase(name);
+    const std::string text = document.dump();
     tinygltf::TinyGLTF parser;
     parser.SetFsCallbacks({[](const std::string&, void*) { return false; },
                            [](const std::string& path, void*) { return path; },
@@ -66,19 +65,22 @@ tinygltf::Model parseModel(const json& document, const GltfFile& file) {
     std::string error;
     std::string warning;
     if (!parser.LoadASCIIFromString(&model, &error, &warning, text.data(), unsigned(text.size()), "")) {
-        file.fail("", fmt::format("tinygltf cannot read it: {}", printable(error)));
+        file.fail("", fmt::format("tinygltf cannot read it: {}", printable(error, 200)));
     }
     return model;
 }
 
-void addImages(const json& document, tinygltf::Model& model) {
-    if (!document.contains("images")) return;
+/// The images as the document names them, not yet read.
+std::vector<tinygltf::Image> imagesOf(const json& document) {
+    std::vector<tinygltf::Image> images;
+    if (!document.contains("images")) return images;
     for (const json& image : document["images"]) {
-        tinygltf::Image& to = model.images.emplace_back();
+        tinygltf::Image& to = images.emplace_back();
         to.name = image.value("name", "");
         to.uri = image.value("uri", "");
         to.bufferView = image.value("bufferView", -1);
     }
+    return images;
 }
 
 void noteIgnoredExtensions(const GltfContext& context) {
@@ -88,7 +90,7 @@ void noteIgnoredExtensions(const GltfContext& context) {
 }
 
 Scene load(GltfFile& file, const LoadOptions& options) {
-    const json document = parseJson(file);
+    json document = parseJson(file);
     if (!document.is_object()) file.fail("", "is no JSON object");
     checkExtensions(document, file);
     checkSchema(document, file);
@@ -97,18 +99,22 @@ Scene load(GltfFile& file, const LoadOptions& options) {
     for (const Bytes& bytes : buffers) bufferBytes.push_back(bytes.size());
     checkReferences(document, bufferBytes, file);
 
-    tinygltf::Model model = parseModel(document, file);
+    std::vector<tinygltf::Image> images = imagesOf(document);
+    tinygltf::Model model = parseModel(std::move(document), file);
+    model.images = std::move(images);
     for (Bytes& bytes : buffers) model.buffers.emplace_back().data = std::move(bytes);
-    addImages(document, model);
 
     Scene scene;
-    const GltfContext context{file, model, scene, options.drawsMarkers};
+    std::size_t elementsRead = 0;
+    const GltfContext context{file, model, scene, elementsRead, options.drawsMarkers};
     noteIgnoredExtensions(context);
     GltfMaterials materials(context);
     GltfMeshes meshes(context, materials);
     placeNodes(context, meshes);
     if (scene.materials.empty()) materials.materialOf(-1);
     computeBounds(scene);
+    const glm::vec3 extent = scene.boundsMax - scene.boundsMin;
+    if (!std::isfinite(extent.x + extent.y + extent.z)) file.fail("", "its extent is beyond what 32-bit floats hold");
     return scene;
 }
 

@@ -111,8 +111,8 @@ void GltfMaterials::applySpecularGlossiness(const tinygltf::Value& extension, Ma
     for (int i = 0; i < 4; ++i) material.baseColor[i] = elementOr(member(extension, "diffuseFactor"), i, 1.0f);
     const tinygltf::Value& texture = member(extension, "diffuseTexture");
     tinygltf::TextureInfo info;
-    info.index = int(numberOr(member(texture, "index"), -1.0f));
-    info.texCoord = int(numberOr(member(texture, "texCoord"), 0.0f));
+    if (texture.IsObject()) info.index = member(texture, "index").GetNumberAsInt();
+    info.texCoord = member(texture, "texCoord").GetNumberAsInt();
     const tinygltf::Value& transform = member(member(texture, "extensions"), "KHR_texture_transform");
     if (transform.IsObject()) info.extensions["KHR_texture_transform"] = transform;
     material.baseColorTexture = textureRef(info, true, place + ".diffuseTexture");

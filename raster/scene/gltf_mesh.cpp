@@ -26,22 +26,35 @@ public:
 
     bool has(const char* name) const { return primitive_.attributes.contains(name); }
 
-    /// `components` floats a vertex; `fill` for those that the file leaves out.
-    std::vector<float> read(const char* name, int components, float fill) const {
+    /// Copies an attribute into the member of Vertex at `offset`, `components` floats wide; nothing if the file has it
+    /// not. POSITION comes first: `vertices` is resized. Components that the file leaves out (an alpha) are 1.
+    void read(const char* name, std::size_t offset, int components, std::vector<Vertex>& vertices) const {
+        if (!has(name)) return;
         std::vector<float> values =
-            readFloats(context_, primitive_.attributes.at(name), components, fill, fmt::format("{}.{}", place_, name));
+            readFloats(context_, primitive_.attributes.at(name), components, 1.0f, fmt::format("{}.{}", place_, name));
+        morph(name, components, values);
+        const auto width = std::size_t(components);
+        vertices.resize(values.size() / width);
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+            std::memcpy(reinterpret_cast<char*>(&vertices[i]) + offset, &values[i * width], width * sizeof(float));
+        }
+    }
+
+private:
+    void morph(const char* name, int components, std::vector<float>& values) const {
         for (std::size_t t = 0; t < std::min(weights_.size(), primitive_.targets.size()); ++t) {
             const auto found = primitive_.targets[t].find(name);
             const auto weight = float(weights_[t]);
             if (found == primitive_.targets[t].end() || weight == 0.0f) continue;
-            const std::vector<float> change = readFloats(context_, found->second, components, 0.0f,
-                                                         fmt::format("{}.targets[{}].{}", place_, t, name));
-            for (std::size_t i = 0; i < values.size(); ++i) values[i] += weight * change[i];
+            const std::string place = fmt::format("{}.targets[{}].{}", place_, t, name);
+            const std::vector<float> change = readFloats(context_, found->second, components, 0.0f, place);
+            for (std::size_t i = 0; i < values.size(); ++i) {
+                values[i] += weight * change[i];
+                if (!std::isfinite(values[i])) context_.file.fail(place, "makes a number that is not finite");
+            }
         }
-        return values;
     }
 
-private:
     const GltfContext& context_;
     const tinygltf::Primitive& primitive_;
     const std::vector<double>& weights_;
@@ -112,14 +125,6 @@ std::size_t normalizeNormals(std::vector<Vertex>& vertices, const Indices& indic
     return count;
 }
 
-/// Copies `components` floats a vertex into the member of Vertex at `offset` bytes.
-void fill(std::vector<Vertex>& vertices, const std::vector<float>& values, std::size_t components, std::size_t offset) {
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        std::memcpy(reinterpret_cast<char*>(&vertices[i]) + offset, &values[i * components],
-                    components * sizeof(float));
-    }
-}
-
 /// The file's tangents: unit, perpendicular to the normal, w = +1 or -1.
 void tidyTangents(std::vector<Vertex>& vertices) {
     for (Vertex& vertex : vertices) {
@@ -150,72 +155,75 @@ const std::vector<int>& GltfMeshes::meshesOf(int mesh, const std::vector<double>
 
 bool GltfMeshes::convert(const tinygltf::Primitive& from, const std::vector<double>& weights, Mesh& to,
                          const std::string& place) {
-    const GltfFile& file = context_.file;
-    if (from.mode < TINYGLTF_MODE_TRIANGLES) {
-        context_.note(place + ": points and lines are not drawn");
-        return false;
-    }
     const Attributes attributes(context_, from, weights, place);
-    if (!attributes.has("POSITION")) {
-        context_.note(place + ": has no POSITION, and is not drawn");
+    if (from.mode < TINYGLTF_MODE_TRIANGLES || !attributes.has("POSITION")) {
+        context_.note(place + ": only triangles with a POSITION are drawn");
         return false;
     }
-    const std::vector<float> positions = attributes.read("POSITION", 3, 0.0f);
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        if (!std::isfinite(positions[i]))
-            file.fail(fmt::format("{}.POSITION[{}]", place, i / 3), "is not finite once morphed");
-    }
-    to.vertices.resize(positions.size() / 3);
-    fill(to.vertices, positions, 3, offsetof(Vertex, position));
-
-    Indices given;
-    if (from.indices >= 0) {
-        given = readIndices(context_, from.indices, to.vertices.size(), place + ".indices");
-    } else {
-        given.resize(to.vertices.size());
-        std::iota(given.begin(), given.end(), 0u);
-    }
-    if (given.size() < 3) {
+    attributes.read("POSITION", offsetof(Vertex, position), 3, to.vertices);
+    to.indices = readTriangles(from, to.vertices.size(), place);
+    if (to.indices.empty()) {
         context_.note(place + ": has no triangle");
         return false;
     }
-    if (from.mode == TINYGLTF_MODE_TRIANGLES && given.size() % 3 != 0) {
-        context_.note(
-            fmt::format("{}: {} indices are no whole number of triangles; the last are left out", place, given.size()));
+    const bool hasNormals = attributes.has("NORMAL");
+    count(hasNormals ? to.vertices.size() : to.indices.size(), to.indices.size(), place);
+
+    attributes.read("TEXCOORD_0", offsetof(Vertex, uv0), 2, to.vertices);
+    attributes.read("TEXCOORD_1", offsetof(Vertex, uv1), 2, to.vertices);
+    attributes.read("COLOR_0", offsetof(Vertex, color), 4, to.vertices);
+    for (Vertex& vertex : to.vertices) vertex.color = glm::clamp(vertex.color, 0.0f, 1.0f);
+    attributes.read("NORMAL", offsetof(Vertex, normal), 3, to.vertices);
+    if (!hasNormals) {
+        makeFlat(to.vertices, to.indices);
+    } else if (const std::size_t missing = normalizeNormals(to.vertices, to.indices); missing > 0) {
+        context_.note(fmt::format("{}: {} normals have no direction; those of the faces stand in", place, missing));
     }
-    to.indices = triangleList(given, from.mode);
-    // Flat and mirrored vertices are split later: a vertex for each corner is the most there can be.
-    vertexCount_ += std::max(to.vertices.size(), to.indices.size());
-    indexCount_ += to.indices.size();
-    if (vertexCount_ > 3 * gltf_limits::kVertices || indexCount_ > gltf_limits::kIndices) {
-        file.fail(place, fmt::format("the scene has more than {} triangles", gltf_limits::kIndices / 3));
-    }
+
     to.material = materials_.materialOf(from.material);
     const Material& material = context_.scene.materials[std::size_t(to.material)];
-
-    if (attributes.has("TEXCOORD_0"))
-        fill(to.vertices, attributes.read("TEXCOORD_0", 2, 0.0f), 2, offsetof(Vertex, uv0));
-    if (attributes.has("TEXCOORD_1"))
-        fill(to.vertices, attributes.read("TEXCOORD_1", 2, 0.0f), 2, offsetof(Vertex, uv1));
-    if (attributes.has("COLOR_0")) fill(to.vertices, attributes.read("COLOR_0", 4, 1.0f), 4, offsetof(Vertex, color));
-    const bool hasNormals = attributes.has("NORMAL");
-    if (hasNormals) {
-        fill(to.vertices, attributes.read("NORMAL", 3, 0.0f), 3, offsetof(Vertex, normal));
-        if (const std::size_t missing = normalizeNormals(to.vertices, to.indices); missing > 0) {
-            context_.note(fmt::format("{}: {} normals have no direction; those of the faces stand in", place, missing));
-        }
-    } else {
-        makeFlat(to.vertices, to.indices);
-    }
+    const TextureRef& normalMap = material.normalTexture;
     if (hasNormals && attributes.has("TANGENT")) {
-        fill(to.vertices, attributes.read("TANGENT", 4, 1.0f), 4, offsetof(Vertex, tangent));
+        attributes.read("TANGENT", offsetof(Vertex, tangent), 4, to.vertices);
         tidyTangents(to.vertices);
-    } else if (material.normalTexture.texture >= 0) {
-        generateTangents(to.vertices, to.indices, material.normalTexture.texCoord, material.normalTexture.uvFromUv);
+    } else if (normalMap.texture >= 0) {
+        generateTangents(to.vertices, to.indices, normalMap.texCoord, normalMap.uvFromUv);
     } else {
         for (Vertex& vertex : to.vertices) vertex.tangent = glm::vec4(perpendicularTo(vertex.normal), 1.0f);
     }
+    for (const TextureRef* ref :
+         {&material.baseColorTexture, &material.metallicTexture, &normalMap, &material.emissionTexture}) {
+        const char* set = ref->texCoord == 0 ? "TEXCOORD_0" : "TEXCOORD_1";
+        if (ref->texture >= 0 && !attributes.has(set)) {
+            context_.note(fmt::format("{}: has no {}, which its material reads; (0, 0) stands in", place, set));
+        }
+    }
     return true;
+}
+
+Indices GltfMeshes::readTriangles(const tinygltf::Primitive& from, std::size_t vertexCount,
+                                  const std::string& place) const {
+    Indices given;
+    if (from.indices >= 0) {
+        given = readIndices(context_, from.indices, vertexCount, place + ".indices");
+    } else {
+        given.resize(vertexCount);
+        std::iota(given.begin(), given.end(), 0u);
+    }
+    if (from.mode == TINYGLTF_MODE_TRIANGLES && given.size() % 3 != 0) {
+        context_.note(
+            fmt::format("{}: {} corners are no whole number of triangles; the last are left out", place, given.size()));
+    }
+    return triangleList(given, from.mode);
+}
+
+void GltfMeshes::count(std::size_t vertices, std::size_t indices, const std::string& place) {
+    vertexCount_ += vertices;
+    indexCount_ += indices;
+    if (vertexCount_ > gltf_limits::kVertices || indexCount_ > gltf_limits::kIndices) {
+        context_.file.fail(place, fmt::format("the scene has more than {} vertices or {} indices",
+                                              gltf_limits::kVertices, gltf_limits::kIndices));
+    }
 }
 
 }  // namespace earthshine::raster

@@ -21,6 +21,10 @@ public:
 private:
     bool convert(const tinygltf::Primitive& from, const std::vector<double>& weights, Mesh& to,
                  const std::string& place);
+    std::vector<std::uint32_t> readTriangles(const tinygltf::Primitive& from, std::size_t vertexCount,
+                                             const std::string& place) const;
+    /// Keeps the scene within gltf_limits.
+    void count(std::size_t vertices, std::size_t indices, const std::string& place);
 
     const GltfContext& context_;
     GltfMaterials& materials_;

@@ -160,7 +160,11 @@ private:
             return;
         }
         if (node.skin >= 0) context_.note(place + ": its skin is drawn in the bind pose");
-        for (const int mesh : meshes_.meshesOf(node.mesh, node.weights)) {
+        const std::vector<int>& parts = meshes_.meshesOf(node.mesh, node.weights);
+        if (context_.scene.instances.size() + parts.size() > gltf_limits::kInstances) {
+            context_.file.fail(place, fmt::format("the scene has more than {} instances", gltf_limits::kInstances));
+        }
+        for (const int mesh : parts) {
             context_.scene.instances.push_back({mesh, glm::mat4(worldFromNode)});
         }
     }

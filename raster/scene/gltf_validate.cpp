@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 
 #include <fmt/format.h>
@@ -56,6 +57,7 @@ public:
         forEach("accessors", &ReferenceCheck::checkAccessor);
         forEach("images", &ReferenceCheck::checkImage);
         forEach("cameras", &ReferenceCheck::checkCamera);
+        checkLights();
         forEach("meshes", &ReferenceCheck::checkMesh);
         forEach("nodes", &ReferenceCheck::checkNode);
         checkTrees();
@@ -131,6 +133,17 @@ private:
             file_.fail(place + ".orthographic.ymag", "is 0");
         if (lens.contains("zfar") && lens["zfar"].get<double>() <= lens["znear"].get<double>()) {
             file_.fail(place, "its zfar is not beyond its znear");
+        }
+    }
+
+    void checkLights() const {
+        const json::json_pointer lights("/extensions/KHR_lights_punctual/lights");
+        if (!document_.contains(lights)) return;
+        for (std::size_t i = 0; i < document_[lights].size(); ++i) {
+            const json& light = document_[lights][i];
+            if (light["type"] == "spot" && !light.contains("spot")) {
+                file_.fail(fmt::format("extensions.KHR_lights_punctual.lights[{}].spot", i), "is missing");
+            }
         }
     }
 

@@ -17,8 +17,9 @@ struct LoadOptions {
 ///
 /// Read: glTF 2.0, KHR_lights_punctual, KHR_texture_transform, KHR_materials_emissive_strength, KHR_mesh_quantization;
 /// KHR_materials_unlit and KHR_materials_pbrSpecularGlossiness are drawn as diffuse surfaces. Morph targets stand at
-/// their default weights, skins in their bind pose. What is left out is a line each in Scene::notes; an extension that
-/// the file requires and that is not in this list is an error.
+/// their default weights, skins in their bind pose; nodes that engines use as markers are left out unless asked for.
+/// What is left out is a line each in Scene::notes; an extension that the file requires and that is not in this list is
+/// an error.
 ///
 /// Every number is checked before it is used, so the file may come from anywhere. Only files in the folder of `path`
 /// (after links are resolved) and data URIs are read.

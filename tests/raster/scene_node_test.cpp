@@ -107,6 +107,22 @@ TEST(SceneNodes, TinyIsNotFlat) {
     EXPECT_EQ(builder.load().instances.size(), 1u);
 }
 
+TEST(SceneNodes, MarkersOfEnginesAreDrawnOnRequestOnly) {
+    for (const char* name : {"CasMoveLimit", "CasSector1", "UCX_wall_01", "UBX_", "floor-colonly", "a-navmesh"}) {
+        GltfBuilder builder = quadBuilder();
+        builder.document["nodes"][0]["name"] = name;
+        EXPECT_THAT(builder.load().instances, IsEmpty()) << name;
+        EXPECT_THAT(builder.load().notes, ElementsAre(HasSubstr("markers"))) << name;
+        EXPECT_EQ(builder.load({.drawsMarkers = true}).instances.size(), 1u) << name;
+    }
+    for (const char* name : {"", "Casino", "Castle", "ucx_wall", "colonly", "-colonly wall"}) {
+        GltfBuilder builder = quadBuilder();
+        builder.document["nodes"][0]["name"] = name;
+        EXPECT_EQ(builder.load().instances.size(), 1u) << name;
+        EXPECT_THAT(builder.load().notes, IsEmpty()) << name;
+    }
+}
+
 TEST(SceneNodes, SkinsAreNoted) {
     GltfBuilder builder = quadBuilder();
     builder.document["skins"] = Json::array({Json{{"joints", {0}}}});

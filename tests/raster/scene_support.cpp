@@ -129,9 +129,9 @@ ByteVector GltfBuilder::glb() const {
     return file;
 }
 
-Scene GltfBuilder::load() const {
+Scene GltfBuilder::load(const LoadOptions& options) const {
     const TempFolder folder;
-    return loadGltf(folder.write("scene.gltf", gltf()));
+    return loadGltf(folder.write("scene.gltf", gltf()), options);
 }
 
 std::vector<float> Quad::positions() {

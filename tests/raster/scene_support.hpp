@@ -65,7 +65,7 @@ struct GltfBuilder {
     /// The same as a .glb, its buffer as the binary chunk.
     ByteVector glb() const;
     /// Loads gltf() from a folder of its own.
-    Scene load() const;
+    Scene load(const LoadOptions& options = {}) const;
 
     static int componentType(std::int8_t) { return 5120; }
     static int componentType(std::uint8_t) { return 5121; }

@@ -59,6 +59,11 @@ std::vector<std::uint16_t> linearHalfFromSrgb16(const std::vector<std::uint16_t>
     return result;
 }
 
+/// GL takes offsets into bound buffers as pointers.
+const void* bufferOffset(std::size_t bytes) {
+    return reinterpret_cast<const void*>(bytes);  // NOLINT(performance-no-int-to-ptr)
+}
+
 GLint wrapMode(Wrap wrap) {
     switch (wrap) {
         case Wrap::Repeat:
@@ -124,8 +129,7 @@ void SceneGl::uploadGeometry(const Scene& scene) {
     GLuint attribute = 0;
     const auto addAttribute = [&](GLint channels, std::size_t offset) {
         gl.EnableVertexAttribArray(attribute);
-        gl.VertexAttribPointer(attribute, channels, GL_FLOAT, GL_FALSE, sizeof(Vertex),
-                               reinterpret_cast<const void*>(offset));
+        gl.VertexAttribPointer(attribute, channels, GL_FLOAT, GL_FALSE, sizeof(Vertex), bufferOffset(offset));
         ++attribute;
     };
     addAttribute(3, offsetof(Vertex, position));
@@ -284,8 +288,8 @@ void SceneGl::draw(const ScenePrograms& programs, const glm::mat4& viewFromWorld
         gl.FrontFace(mirrors(instance.worldFromObject) ? GL_CCW : GL_CW);
         gl.BindBufferRange(GL_UNIFORM_BUFFER, kInstanceBinding, instanceBuffer_.name(), stride * index,
                            sizeof(InstanceBlock));
-        gl.DrawElementsBaseVertex(GL_TRIANGLES, mesh.indexCount, GL_UNSIGNED_INT,
-                                  reinterpret_cast<const void*>(mesh.firstIndexByte), mesh.firstVertex);
+        gl.DrawElementsBaseVertex(GL_TRIANGLES, mesh.indexCount, GL_UNSIGNED_INT, bufferOffset(mesh.firstIndexByte),
+                                  mesh.firstVertex);
     }
 }
 

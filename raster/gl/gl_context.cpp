@@ -171,8 +171,10 @@ std::unique_ptr<GlContext> createContext(std::string_view which) {
             errors += fmt::format("{}{}: {}", errors.empty() ? "" : "; ", candidate.name, error.what());
         }
     }
-    throw DeviceError(fmt::format(
-        "no OpenGL context: {} (install a driver: on Debian libegl1 and libgl1-mesa-dri, or libosmesa6)", errors));
+    throw DeviceError(
+        fmt::format("no OpenGL context: {}; try another kind, or install a driver (Debian: libegl1 with "
+                    "libgl1-mesa-dri, or libosmesa6)",
+                    errors));
 }
 
 }  // namespace earthshine::raster

@@ -1,7 +1,7 @@
 #include "raster/gl/shader_source.hpp"
 
 #include <algorithm>
-#include <regex>
+#include <charconv>
 
 #include <fmt/format.h>
 
@@ -36,6 +36,31 @@ void append(ShaderSource& shader, std::string_view name, const std::string& defi
     }
 }
 
+/// Takes a number off the front of `text`.
+bool takeNumber(std::string_view& text, std::size_t& number) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    text.remove_prefix(std::size_t(end - text.data()));
+    return error == std::errc();
+}
+
+bool takeChar(std::string_view& text, char wanted) {
+    if (!text.starts_with(wanted)) return false;
+    text.remove_prefix(1);
+    return true;
+}
+
+/// One line of a log. Mesa, Intel and AMD write "0:12", NVIDIA "0(12)", at its start or after "ERROR: ".
+std::string nameFile(std::string_view line, const std::vector<std::string>& files) {
+    const std::string_view prefix = line.substr(0, std::min(line.find_first_of("0123456789"), line.size()));
+    std::string_view rest = line.substr(prefix.size());
+    std::size_t file = 0;
+    std::size_t number = 0;
+    const bool isPlace = (prefix.empty() || prefix.ends_with(": ")) && takeNumber(rest, file) && file < files.size() &&
+                         (takeChar(rest, ':') ? takeNumber(rest, number)
+                                              : takeChar(rest, '(') && takeNumber(rest, number) && takeChar(rest, ')'));
+    return isPlace ? fmt::format("{}{}:{}{}", prefix, files[file], number, rest) : std::string(line);
+}
+
 }  // namespace
 
 ShaderSource loadShader(std::string_view name, const std::vector<std::string>& defines) {
@@ -47,21 +72,12 @@ ShaderSource loadShader(std::string_view name, const std::vector<std::string>& d
 }
 
 std::string nameFiles(std::string_view log, const std::vector<std::string>& files) {
-    // Mesa, Intel and AMD write "0:12", NVIDIA "0(12)", at the start of a line or after "ERROR: ".
-    static const std::regex place(R"((^|\n|: )(\d+)(?::(\d+)|\((\d+)\)))");
-    const std::string text(log);
     std::string result;
-    auto last = text.cbegin();
-    for (std::sregex_iterator it(text.begin(), text.end(), place), end; it != end; ++it) {
-        const std::smatch& match = *it;
-        const std::string number = match[2].str();
-        const std::size_t file = number.size() < 4 ? std::size_t(std::stoi(number)) : files.size();
-        result.append(last, match[0].first);
-        const std::string line = match[3].matched ? match[3].str() : match[4].str();
-        result += file < files.size() ? fmt::format("{}{}:{}", match[1].str(), files[file], line) : match[0].str();
-        last = match[0].second;
+    while (!log.empty()) {
+        const std::size_t end = std::min(log.find('\n'), log.size() - 1) + 1;
+        result += nameFile(log.substr(0, end), files);
+        log.remove_prefix(end);
     }
-    result.append(last, text.cend());
     return result;
 }
 

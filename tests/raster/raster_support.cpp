@@ -2,6 +2,12 @@
 
 #include <cstdlib>
 
+// LeakSanitizer asks this function, if it is there: Mesa's OSMesa never frees what it allocates for its framebuffers.
+extern "C" const char* __lsan_default_suppressions();   // NOLINT(bugprone-reserved-identifier)
+extern "C" const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier)
+    return "leak:libOSMesa.so";
+}
+
 namespace earthshine::raster::test {
 
 namespace {

@@ -15,6 +15,9 @@ std::string testName(const DeviceCaps& caps) {
 }
 
 std::vector<DeviceCaps> testedDevices() {
+    // Mesa's CPU device is not there unless it is asked for. Here, since the list of tests is made without the
+    // environment that tests then run in.
+    ::setenv("RUSTICL_ENABLE", "llvmpipe", 0);
     std::vector<DeviceCaps> devices;
     const char* wanted = std::getenv("EARTHSHINE_TEST_DEVICES");
     for (const DeviceCaps& caps : listDevices()) {

@@ -2,6 +2,7 @@
 // Every way that a kernel can be built here: each usable device x LANES x storage. A test that runs through these
 // proves that width, storage and driver change nothing but rounding.
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,11 @@ struct Variant {
     DeviceOptions options;
     std::string name;  ///< fit for a test's name: "pocl_lanes16_planar"
 };
+
+/// How GoogleTest shows one.
+inline void PrintTo(const Variant& variant, std::ostream* out) {
+    *out << variant.name;
+}
 
 /// Devices whose platform or name holds the text of $EARTHSHINE_TEST_DEVICES, or all usable ones without it.
 std::vector<Variant> allVariants();

@@ -1,0 +1,95 @@
+// Irradiance is a property of the scene: it does not change with how it is sampled. All against the closed forms, 1 %.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include <fmt/format.h>
+#include <glm/ext/matrix_transform.hpp>
+
+#include "reference/device_variants.hpp"
+#include "truth/truth_scene.hpp"
+
+namespace earthshine::truth {
+namespace {
+
+constexpr double kBar = 0.01;
+constexpr double kAlbedo = 0.5, kLux = 1000.0;
+const Rectangle kEmitter{{0, 0, 0}, {1, 0, 0}, {0, 0, -1}};
+const Rectangle kAbove{{0, 1, -1}, {1, 0, 0}, {0, 0, 1}};
+const Rectangle kBeside{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}};
+
+class Invariance : public testing::Test {
+protected:
+    static raster::Scene platesWith(const Rectangle& receiver) {
+        raster::Scene scene;
+        addRectangle(scene, kEmitter, kAlbedo);
+        addRectangle(scene, receiver, 1.0);
+        return scene;
+    }
+    double formFactor(const FrameImages& frame, const Settings& settings) {
+        return meanOf(compute(pipeline_, frame, settings)) / (kAlbedo * kLux);
+    }
+
+    reference::Variant variant_ = reference::defaultVariants().at(0);
+    Pipeline pipeline_{Device(variant_.caps, variant_.options)};
+};
+
+struct Map {
+    int sizePx;
+    double sideM;
+};
+// The emitter's edges lie on texels' edges with sides of 1 and 2 m. Elsewhere they are met to half a texel each: at
+// worst 1 texel of a side of sizePx / sideM, 2 of it in area, so those maps are the finer ones.
+constexpr Map kMaps[] = {{64, 1.0}, {128, 1.0}, {256, 2.0}, {1024, 1.0}, {512, 1.3}, {1024, 2.2}, {1024, 3.0}};
+
+TEST_F(Invariance, SumOverMapSizeAndFrustum) {
+    DrawnScene parallel(platesWith(kAbove)), perpendicular(platesWith(kBeside));
+    for (const Map& map : kMaps) {
+        const Light light = beamOnto(kEmitter, kLux, map.sideM);
+        const std::string what = fmt::format("_{}px_{}m", map.sizePx, map.sideM);
+        expectTruth("parallel" + what,
+                    formFactor(parallel.draw(squareView(kAbove), {16, 16}, light, map.sizePx), fullSum()), 0.199825,
+                    kBar);
+        expectTruth("perpendicular" + what,
+                    formFactor(perpendicular.draw(squareView(kBeside), {16, 16}, light, map.sizePx), fullSum()),
+                    0.200044, kBar);
+    }
+}
+
+TEST_F(Invariance, DiskOverSamplesRadiusMapSizeAndFrustum) {
+    DrawnScene parallel(platesWith(kAbove));
+    for (const Map& map : {Map{128, 1.0}, Map{512, 1.0}, Map{512, 1.3}}) {
+        const FrameImages frame =
+            parallel.draw(squareView(kAbove), {32, 32}, beamOnto(kEmitter, kLux, map.sideM), map.sizePx);
+        const double sum = formFactor(frame, fullSum());
+        // From sqrt(2) on the disk holds the map from any centre. Its samples share the area of the disk, 6 to 21 times
+        // that of the emitter: 256 are some 12 to 40 on it.
+        for (const double radiusUv : {1.4142136, 1.7, 2.0})
+            for (const int sampleCount : {256, 1024, 4096})
+                expectTruth(fmt::format("{}px_{}m_{}spp_radius_{}", map.sizePx, map.sideM, sampleCount, radiusUv),
+                            formFactor(frame, wholeDisk(sampleCount, radiusUv)), sum, kBar);
+    }
+}
+
+// Along a shared edge what a point receives peaks beside its own projection, where the pattern has few samples, the
+// same for every point. So the light is rolled about its axis, which turns the pattern, and the mean is over the rolls.
+TEST_F(Invariance, DiskAlongASharedEdge) {
+    DrawnScene perpendicular(platesWith(kBeside));
+    constexpr int kRolls = 16;
+    double sum = 0.0, disk = 0.0;
+    for (int roll = 0; roll < kRolls; ++roll) {
+        Light light = beamOnto(kEmitter, kLux, 1.45);  // holds the emitter at any roll
+        const double angle = 2.0 * std::numbers::pi * (roll + 0.37) / kRolls;
+        light.camera.viewFromWorld =
+            glm::mat4(glm::rotate(glm::dmat4(1.0), angle, glm::dvec3(0, 0, 1))) * light.camera.viewFromWorld;
+        const FrameImages frame = perpendicular.draw(squareView(kBeside), {32, 32}, light, 256);
+        sum += formFactor(frame, fullSum()) / kRolls;
+        disk += formFactor(frame, wholeDisk(4096)) / kRolls;
+    }
+    expectTruth("sum", sum, 0.200044, kBar);
+    expectTruth("disk", disk, sum, kBar);
+}
+
+}  // namespace
+}  // namespace earthshine::truth

@@ -53,6 +53,14 @@ protected:
         return readExr(folder / file, channels, PixelFormat::RGBA32F);
     }
 
+    /// Replaces the first `from` in a text file.
+    void edit(const std::string& name, const std::string& from, const std::string& to) {
+        std::string text = readText(folder / name);
+        const auto at = text.find(from);
+        ASSERT_NE(at, std::string::npos) << from << " is not in\n" << text;
+        test::writeText(folder / name, text.replace(at, from.size(), to));
+    }
+
     TempFolder folder;
 };
 
@@ -166,9 +174,18 @@ TEST_F(Render, TheReportHoldsEverySettingAsItWasGiven) {
     EXPECT_THAT(steps, ElementsAre("raster", "read back", "compute", "frame"));
 }
 
-TEST_F(Render, ValuesThatAreNotFiniteAreCounted) {
-    render({"-o", path("a.exr"), "--report", path("r.json"), "--aov", "direct"});
-    EXPECT_EQ(json("r.json")["nonFinite"], (nlohmann::json{{"color", 0}, {"direct", 0}}));
+TEST_F(Render, ValuesThatAreNotFiniteAreCountedAndToldOf) {
+    render({"-o", path("a.exr"), "--report", path("r.json"), "--aov", "direct,albedo", "--save-inputs", path("in")});
+    EXPECT_EQ(json("r.json")["nonFinite"], (nlohmann::json{{"color", 0}, {"direct", 0}, {"albedo", 0}}));
+
+    // A lamp near the end of what a float holds: less than a metre away its illuminance is beyond.
+    edit("in/inputs.json", "\"intensity\": [300.0, 300.0, 300.0]", "\"intensity\": [3e38, 3e38, 3e38]");
+    const Result result = runEarthshine(
+        {"indirect", path("in"), "-o", path("b.exr"), "--report", path("s.json"), "--aov", "direct,albedo"});
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_THAT(result.err, HasSubstr("earthshine: warning: " + path("b.exr") + ": direct: "));
+    EXPECT_GT(json("s.json")["nonFinite"]["direct"], 0);
+    EXPECT_EQ(json("s.json")["nonFinite"]["albedo"], 0);
 }
 
 TEST_F(Render, TheBackgroundStandsWhereNothingIs) {
@@ -235,11 +252,7 @@ TEST_F(Render, BrokenInputsEndInOneLine) {
 
 TEST_F(Render, AnAovThatIsNotThereIsRefused) {
     render({"-o", path("a.png"), "--save-inputs", path("in")});
-    std::string text = readText(folder / "in/inputs.json");
-    const std::string entry = "\"motion\": \"motion.exr\",";
-    const auto at = text.find(entry);
-    ASSERT_NE(at, std::string::npos) << text;
-    test::writeText(folder / "in/inputs.json", text.erase(at, entry.size()));
+    edit("in/inputs.json", "\"motion\": \"motion.exr\",", "");
     const Result result = runEarthshine({"indirect", path("in"), "-o", path("b.exr"), "--aov", "motion"});
     EXPECT_EQ(result.exitCode, 1);
     EXPECT_EQ(result.err, "earthshine: --aov: these inputs have no motion\n");

@@ -8,5 +8,6 @@ namespace earthshine::cli {
 void addDevices(Options& program);
 void addRender(Options& program);
 void addIndirect(Options& program);
+void addCompare(Options& program);
 
 }  // namespace earthshine::cli

@@ -1,0 +1,373 @@
+#include "raster/trace/path_tracer.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include <fmt/format.h>
+#include <glm/glm.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "earthshine/error.hpp"
+#include "parallel.hpp"
+#include "raster/trace/light_source.hpp"
+#include "raster/trace/sobol.hpp"
+#include "raster/trace/trace_scene.hpp"
+#include "raster/trace/trace_state.hpp"
+
+namespace earthshine::trace {
+
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+constexpr int kBouncesBeforeRoulette = 3;
+constexpr float kMostSurvival = 0.95f;  // so that paths end even among perfect reflectors
+
+/// A direction about the unit vector `normal`, as likely as its cosine.
+glm::vec3 cosineDirection(const glm::vec3& normal, const glm::vec2& random) {
+    // Orthonormal basis: Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
+    const float sign = std::copysign(1.0f, normal.z);
+    const float a = -1.0f / (sign + normal.z), b = normal.x * normal.y * a;
+    const glm::vec3 tangent(1.0f + sign * normal.x * normal.x * a, sign * b, -sign * normal.x);
+    const glm::vec3 bitangent(b, sign + normal.y * normal.y * a, -normal.y);
+    const float radius = std::sqrt(random.x), angle = 2.0f * kPi * random.y;
+    return radius * std::cos(angle) * tangent + radius * std::sin(angle) * bitangent +
+           std::sqrt(std::max(1.0f - random.x, 0.0f)) * normal;
+}
+
+/// Rays of the camera, in trace space, t from 0 at the near plane to 1 at the far one (or without end).
+class CameraRays {
+public:
+    CameraRays(const Camera& camera, Extent extent, const glm::dvec3& originWs)
+        : extent_(extent),
+          viewFromTrace_(glm::dmat4(camera.viewFromWorld) * glm::translate(glm::dmat4(1.0), originWs)),
+          traceFromClip_(glm::inverse(glm::dmat4(camera.clipFromView) * viewFromTrace_)) {}
+
+    /// Through the centre of a pixel, which may lie beyond the picture.
+    Ray through(int xPx, int yPx) const {
+        const double x = 2.0 * (xPx + 0.5) / extent_.widthPx - 1.0;
+        const double y = 1.0 - 2.0 * (yPx + 0.5) / extent_.heightPx;
+        const auto at = [&](double z) { return traceFromClip_ * glm::dvec4(x, y, z, 1.0); };
+        const glm::dvec4 nearClip = at(-1.0), middleClip = at(0.0), farClip = at(1.0);
+        const glm::dvec3 near = glm::dvec3(nearClip) / nearClip.w;
+        const glm::dvec3 towards = glm::dvec3(middleClip) / middleClip.w - near;
+        Ray ray{glm::vec3(near), glm::vec3(towards), 0.0f, std::numeric_limits<float>::infinity()};
+        // A projection without far plane has w = 0 there, or what rounding makes of it.
+        if (std::abs(farClip.w) < 1e-9 * std::abs(nearClip.w)) return ray;
+        const glm::dvec3 whole = glm::dvec3(farClip) / farClip.w - near;
+        if (glm::dot(whole, towards) > 0.0) ray.tFar = float(glm::length(whole) / glm::length(towards));
+        return ray;
+    }
+
+    float depth(const glm::vec3& position) const { return float(-(viewFromTrace_ * glm::dvec4(position, 1.0f)).z); }
+
+private:
+    Extent extent_;
+    glm::dmat4 viewFromTrace_, traceFromClip_;
+};
+
+/// What one thread needs while it traces.
+struct Work {
+    RayCount rays;
+    std::vector<Hit> hits;
+};
+
+void check(const TraceSettings& s) {
+    if (s.extent.widthPx < 1 || s.extent.heightPx < 1)
+        throw UsageError(fmt::format("a picture of {}x{} has no pixels", s.extent.widthPx, s.extent.heightPx));
+    if (s.bounceCount != kAllBounces && (s.bounceCount < 0 || s.bounceCount > 1000))
+        throw UsageError(fmt::format("{} bounces: give 0 to 1000, or all", s.bounceCount));
+    if (!s.indirectVisibility && s.bounceCount != 1)
+        throw UsageError("without indirect visibility there is one bounce, as in a reflective shadow map: ask for 1");
+}
+
+}  // namespace
+
+struct PathTracer::Impl {
+    TraceSettings settings;
+    std::uint64_t fingerprint;
+    TraceScene scene;
+    LightSources lights;
+    CameraRays camera;
+    std::vector<std::optional<Surface>> surfaces;  ///< one a pixel; none: sky
+    std::vector<glm::vec3> direct;                 ///< lux
+    TraceSums sums;
+    RayCount rays;
+    std::size_t surfacePixels = 0;
+
+    Impl(const raster::Scene& from, const Camera& cameraIn, std::span<const Light> lightsIn, const TraceSettings& s)
+        : settings(s),
+          fingerprint(fingerprintOf(from, cameraIn, lightsIn, s)),
+          scene(from),
+          lights(lightsIn, scene.originWs()),
+          camera(cameraIn, s.extent, scene.originWs()) {
+        const std::size_t count = std::size_t(s.extent.widthPx) * std::size_t(s.extent.heightPx);
+        surfaces.resize(count);
+        direct.resize(count);
+        for (auto& half : sums.halves) half.assign(count, glm::dvec3(0.0));
+        forEachRow([this](std::size_t pixel, int x, int y, Work& work) { lookThrough(pixel, x, y, work); });
+        for (const auto& surface : surfaces) surfacePixels += surface.has_value();
+    }
+
+    /// Calls body(pixel, x, y, work) for every pixel, rows in parallel, and adds up the rays.
+    template <class Body>
+    void forEachRow(Body&& body) {
+        const auto start = std::chrono::steady_clock::now();
+        std::atomic<std::size_t> cameraRays{0}, gatherRays{0}, shadowRays{0}, lightRays{0};
+        parallelFor(settings.extent.heightPx, settings.threads, [&](int y) {
+            Work work;
+            for (int x = 0; x < settings.extent.widthPx; ++x)
+                body(std::size_t(y) * std::size_t(settings.extent.widthPx) + std::size_t(x), x, y, work);
+            cameraRays += work.rays.camera;
+            gatherRays += work.rays.gather;
+            shadowRays += work.rays.shadow;
+            lightRays += work.rays.light;
+        });
+        rays.camera += cameraRays;
+        rays.gather += gatherRays;
+        rays.shadow += shadowRays;
+        rays.light += lightRays;
+        rays.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
+
+    void lookThrough(std::size_t pixel, int x, int y, Work& work) {
+        const Ray ray = camera.through(x, y);
+        Hit hit;
+        ++work.rays.camera;
+        if (!scene.closest(ray, hit)) return;
+        Surface surface = scene.surface(hit, camera.through(x + 1, y), camera.through(x, y + 1));
+        surface.turnTowards(-ray.direction);
+        surfaces[pixel] = surface;
+        direct[pixel] = directIrradiance(surface, work);
+    }
+
+    bool isLit(const Surface& surface, const Incident& incident, Work& work) const {
+        ++work.rays.shadow;
+        return !scene.blocksLight({surface.leave(incident.towards), incident.towards, 0.0f, incident.tFar});
+    }
+
+    /// Lux at the side of the surface that it is turned to.
+    glm::vec3 directIrradiance(const Surface& surface, Work& work) const {
+        glm::vec3 sum(0.0f);
+        for (const LightSource& light : lights.all()) {
+            const Incident incident = light.incident(surface.position);
+            const float cosine = glm::dot(surface.normal, incident.direction);
+            if (!(cosine > 0.0f) || !(glm::dot(surface.geometricNormal, incident.direction) > 0.0f)) continue;
+            if (incident.illuminance == glm::vec3(0.0f) || !isLit(surface, incident, work)) continue;
+            sum += incident.illuminance * cosine;
+        }
+        return sum;
+    }
+
+    /// One sample of the indirect irradiance, by a path.
+    glm::vec3 pathSample(const Surface& start, Sampler& sampler, Work& work) const {
+        glm::vec3 irradiance(0.0f), throughput(1.0f);
+        Surface surface = start;
+        for (int bounce = 1; settings.bounceCount == kAllBounces || bounce <= settings.bounceCount; ++bounce) {
+            const glm::vec3 direction = cosineDirection(surface.normal, sampler.next2());
+            if (!(glm::dot(direction, surface.geometricNormal) > 0.0f)) break;
+            Hit hit;
+            ++work.rays.gather;
+            if (!scene.closest({surface.leave(direction), direction}, hit)) break;
+            surface = scene.surface(hit);
+            surface.turnTowards(-direction);
+            // pi from the cosine's density, and 1 / pi from the diffuse surface.
+            throughput *= surface.albedo;
+            irradiance += throughput * directIrradiance(surface, work);
+            if (surface.normal == glm::vec3(0.0f)) break;
+            if (settings.bounceCount == kAllBounces && bounce >= kBouncesBeforeRoulette) {
+                const float survival = std::min(std::max({throughput.r, throughput.g, throughput.b}), kMostSurvival);
+                if (!(sampler.next1() < survival)) break;
+                throughput /= survival;
+            }
+        }
+        return irradiance;
+    }
+
+    /// What the light `index` sends to x by way of y, divided by the density with which y was found.
+    glm::vec3 unoccludedTransfer(const Surface& x, Surface y, std::size_t index, bool isSeenByLight, Work& work) const {
+        const LightSource& light = lights.all()[index];
+        const Incident incident = light.incident(y.position);
+        if (incident.illuminance == glm::vec3(0.0f) || !y.turnTowards(incident.direction)) return glm::vec3(0.0f);
+        const glm::vec3 d = y.position - x.position;
+        const float distance2 = glm::dot(d, d);
+        if (!(distance2 > 0.0f)) return glm::vec3(0.0f);
+        const glm::vec3 w = d / std::sqrt(distance2);
+        const float cosX = glm::dot(x.normal, w), cosY = -glm::dot(y.normal, w);
+        if (!(cosX > 0.0f) || !(cosY > 0.0f)) return glm::vec3(0.0f);
+        float density = 0.0f;
+        if (settings.strategy != Strategy::FromLight)
+            density += cosX / kPi * std::abs(glm::dot(y.geometricNormal, w)) / distance2;
+        const float raysPerArea = light.raysPerArea(y.position, y.geometricNormal);
+        if (!(raysPerArea > 0.0f)) return glm::vec3(0.0f);
+        if (settings.strategy != Strategy::FromSurface) density += lights.chance(index) * raysPerArea;
+        if (!(density > 0.0f) || (!isSeenByLight && !isLit(y, incident, work))) return glm::vec3(0.0f);
+        const float arriving = std::abs(glm::dot(y.geometricNormal, incident.direction));
+        return y.albedo * incident.illuminance * (arriving / kPi * cosX * cosY / (distance2 * density));
+    }
+
+    /// One sample of the indirect irradiance with nothing in the way.
+    glm::vec3 unoccludedSample(const Surface& x, Sampler& sampler, Work& work) const {
+        glm::vec3 irradiance(0.0f);
+        if (lights.empty()) return irradiance;
+        const std::size_t drawn = lights.draw(sampler.next1());
+        const glm::vec2 onLight = sampler.next2(), onSurface = sampler.next2();
+        if (settings.strategy != Strategy::FromSurface) {
+            Ray ray;
+            Hit hit;
+            if (lights.all()[drawn].sampleRay(onLight, ray)) {
+                ++work.rays.light;
+                if (scene.closest(ray, hit)) irradiance += unoccludedTransfer(x, scene.surface(hit), drawn, true, work);
+            }
+        }
+        if (settings.strategy != Strategy::FromLight) {
+            const glm::vec3 direction = cosineDirection(x.normal, onSurface);
+            ++work.rays.gather;
+            scene.allHits({x.leave(direction), direction}, work.hits);
+            for (const Hit& hit : work.hits) {
+                const Surface y = scene.surface(hit);
+                for (std::size_t light = 0; light < lights.all().size(); ++light)
+                    irradiance += unoccludedTransfer(x, y, light, false, work);
+            }
+        }
+        return irradiance;
+    }
+
+    void addSamples(int perPixel) {
+        const int first = sums.sampleCount;
+        forEachRow([&](std::size_t pixel, int, int, Work& work) {
+            if (!surfaces[pixel] || surfaces[pixel]->normal == glm::vec3(0.0f)) return;
+            for (int i = first; i < first + perPixel; ++i) {
+                const auto half = std::size_t(i & 1);
+                Sampler sampler(hashed(std::uint32_t(2 * pixel + half), settings.seed), std::uint32_t(i / 2));
+                const glm::vec3 sample = settings.indirectVisibility
+                                             ? pathSample(*surfaces[pixel], sampler, work)
+                                             : unoccludedSample(*surfaces[pixel], sampler, work);
+                sums.halves[half][pixel] += glm::dvec3(sample);
+            }
+        });
+        sums.sampleCount += perPixel;
+    }
+
+    glm::vec3 indirect(std::size_t pixel) const {
+        if (sums.sampleCount == 0) return glm::vec3(0.0f);
+        return glm::vec3((sums.halves[0][pixel] + sums.halves[1][pixel]) / double(sums.sampleCount));
+    }
+
+    /// An image whose surface pixels are value(pixel, surface), and whose sky is `sky`.
+    template <class Value>
+    HostImage image(const glm::vec3& sky, Value&& value) const {
+        HostImage result(PixelFormat::RGBA32F, settings.extent);
+        for (std::size_t i = 0; i < surfaces.size(); ++i) {
+            const glm::vec3 color = surfaces[i] ? value(i, *surfaces[i]) : sky;
+            float* p = result.pixel(0, 0) + 4 * i;
+            p[0] = color.r, p[1] = color.g, p[2] = color.b;
+            p[3] = surfaces[i] ? 1.0f : 0.0f;
+        }
+        return result;
+    }
+};
+
+PathTracer::PathTracer(const raster::Scene& scene, const Camera& camera, std::span<const Light> lights,
+                       const TraceSettings& settings) {
+    check(settings);
+    impl_ = std::make_unique<Impl>(scene, camera, lights, settings);
+}
+
+PathTracer::~PathTracer() = default;
+PathTracer::PathTracer(PathTracer&&) noexcept = default;
+PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
+
+void PathTracer::addSamples(int perPixel) {
+    if (impl_->settings.bounceCount == 0) return;  // direct light is exact
+    impl_->addSamples(perPixel);
+}
+
+int PathTracer::sampleCount() const {
+    return impl_->sums.sampleCount;
+}
+
+TraceNoise PathTracer::noise() const {
+    const TraceSums& sums = impl_->sums;
+    TraceNoise noise;
+    const double even = (sums.sampleCount + 1) / 2, odd = sums.sampleCount / 2;
+    const auto values = double(3 * impl_->surfacePixels);
+    if (odd < 1.0 || values == 0.0) return noise;
+    double mean = 0.0;
+    for (const auto& half : sums.halves)
+        for (const glm::dvec3& sum : half) mean += (sum.x + sum.y + sum.z) / (sums.sampleCount * values);
+    // The difference of the halves' means has the variance v (1 / even + 1 / odd), the mean of all v / (even + odd).
+    const double scale = even * odd / (double(sums.sampleCount) * double(sums.sampleCount));
+    double variance = 0.0;
+    for (std::size_t i = 0; i < impl_->surfaces.size(); ++i) {
+        const glm::dvec3 difference = sums.halves[0][i] / even - sums.halves[1][i] / odd;
+        const glm::dvec3 value(impl_->indirect(i));
+        for (int c = 0; c < 3; ++c) {
+            const double square = scale * difference[c] * difference[c];
+            if (square > 0.0) noise.relMse += square / (value[c] * value[c] + 0.01 * mean * mean) / values;
+        }
+        const double sum = difference.x + difference.y + difference.z;  // channels share their rays
+        variance += scale * sum * sum;
+    }
+    if (mean > 0.0) noise.meanError = std::sqrt(variance) / values / mean;
+    return noise;
+}
+
+RayCount PathTracer::rays() const {
+    return impl_->rays;
+}
+
+std::size_t PathTracer::surfacePixels() const {
+    return impl_->surfacePixels;
+}
+
+HostImage PathTracer::read(Output output) const {
+    const Impl& impl = *impl_;
+    const glm::vec3 none(0.0f);
+    const auto emission = [&](const Surface& s) { return impl.settings.emission ? s.emission : glm::vec3(0.0f); };
+    const auto direct = [&](std::size_t i, const Surface& s) { return s.albedo / kPi * impl.direct[i] + emission(s); };
+    const auto indirect = [&](std::size_t i, const Surface& s) { return s.albedo / kPi * impl.indirect(i); };
+    switch (output) {
+        case Output::DirectIrradiance:
+            return impl.image(none, [&](std::size_t i, const Surface&) { return impl.direct[i]; });
+        case Output::IndirectIrradiance:
+            return impl.image(none, [&](std::size_t i, const Surface&) { return impl.indirect(i); });
+        case Output::Direct:
+            return impl.image(impl.settings.background, direct);
+        case Output::Indirect:
+            return impl.image(none, indirect);
+        case Output::Color:
+            return impl.image(impl.settings.background,
+                              [&](std::size_t i, const Surface& s) { return direct(i, s) + indirect(i, s); });
+        case Output::Display:
+            break;
+    }
+    throw UsageError("the path tracer has no display picture");
+}
+
+HostImage PathTracer::albedo() const {
+    return impl_->image(glm::vec3(0.0f), [](std::size_t, const Surface& s) { return s.albedo; });
+}
+
+HostImage PathTracer::normalWs() const {
+    return impl_->image(glm::vec3(0.0f), [](std::size_t, const Surface& s) { return s.normal; });
+}
+
+HostImage PathTracer::depth() const {
+    HostImage result(PixelFormat::R32F, impl_->settings.extent);
+    for (std::size_t i = 0; i < impl_->surfaces.size(); ++i)
+        if (impl_->surfaces[i]) result.pixel(0, 0)[i] = impl_->camera.depth(impl_->surfaces[i]->position);
+    return result;
+}
+
+void PathTracer::saveState(const std::string& path) const {
+    writeSums(path, impl_->fingerprint, impl_->settings.extent, impl_->sums);
+}
+
+void PathTracer::loadState(const std::string& path) {
+    impl_->sums = readSums(path, impl_->fingerprint, impl_->settings.extent);
+}
+
+}  // namespace earthshine::trace

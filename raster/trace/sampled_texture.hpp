@@ -1,0 +1,43 @@
+#pragma once
+// Textures as GL filters them, on the CPU.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+#include "raster/scene/scene.hpp"
+
+namespace earthshine::trace {
+
+/// A texture of the scene with its mipmaps. Level 0 is borrowed from the scene, which must outlive this.
+class SampledTexture {
+public:
+    explicit SampledTexture(const raster::Texture& texture);
+
+    /// Linear RGBA at uv (v down), bilinear on level 0 (or the nearest texel, if the texture says so).
+    glm::vec4 sample(const glm::vec2& uv) const { return sampleLevel(uv, 0); }
+
+    /// The same with mipmaps, as GL_LINEAR_MIPMAP_LINEAR does: dx and dy are how uv changes from a pixel to the next.
+    glm::vec4 sample(const glm::vec2& uv, const glm::vec2& dx, const glm::vec2& dy) const;
+
+private:
+    struct Level {
+        int widthPx = 0, heightPx = 0;
+        const std::uint8_t* rgba8 = nullptr;
+        const std::uint16_t* rgba16 = nullptr;
+        std::vector<std::uint8_t> owned8;
+        std::vector<std::uint16_t> owned16;
+    };
+    glm::vec4 texel(const Level& level, int x, int y) const;
+    glm::vec4 sampleLevel(const glm::vec2& uv, int level) const;
+    void addSmallerLevel();
+
+    bool isSrgb_, linearFilter_;
+    raster::Wrap wrapU_, wrapV_;
+    std::vector<Level> levels_;
+};
+
+}  // namespace earthshine::trace

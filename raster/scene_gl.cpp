@@ -11,6 +11,7 @@
 #include <glm/gtc/matrix_inverse.hpp>
 
 #include "earthshine/error.hpp"
+#include "raster/scene/mipmaps.hpp"
 
 namespace earthshine::raster {
 
@@ -152,16 +153,23 @@ void SceneGl::uploadTextures(const Scene& scene) {
                 scene.name, texture.name, texture.widthPx, texture.heightPx, most, context_->description().renderer));
         textures_.push_back(makeTexture(gl));
         gl.BindTexture(GL_TEXTURE_2D, textures_.back().name());
-        const auto upload = [&](GLint internalFormat, GLenum type, const void* texels) {
-            gl.TexImage2D(GL_TEXTURE_2D, 0, internalFormat, texture.widthPx, texture.heightPx, 0, GL_RGBA, type,
-                          texels);
+        const auto upload = [&](GLint level, const auto& from) {
+            const auto put = [&](GLint internalFormat, GLenum type, const void* texels) {
+                gl.TexImage2D(GL_TEXTURE_2D, level, internalFormat, from.widthPx, from.heightPx, 0, GL_RGBA, type,
+                              texels);
+            };
+            if (from.rgba16.empty())
+                put(texture.isSrgb ? GL_SRGB8_ALPHA8 : GL_RGBA8, GL_UNSIGNED_BYTE, from.rgba8.data());
+            else if (texture.isSrgb)
+                put(GL_RGBA16F, GL_HALF_FLOAT, linearHalfFromSrgb16(from.rgba16).data());
+            else
+                put(GL_RGBA16, GL_UNSIGNED_SHORT, from.rgba16.data());
         };
-        if (texture.rgba16.empty())
-            upload(texture.isSrgb ? GL_SRGB8_ALPHA8 : GL_RGBA8, GL_UNSIGNED_BYTE, texture.rgba8.data());
-        else if (texture.isSrgb)
-            upload(GL_RGBA16F, GL_HALF_FLOAT, linearHalfFromSrgb16(texture.rgba16).data());
-        else
-            upload(GL_RGBA16, GL_UNSIGNED_SHORT, texture.rgba16.data());
+        upload(0, texture);
+        if (texture.mipmaps) {
+            GLint level = 0;
+            for (const MipLevel& smaller : smallerLevels(texture)) upload(++level, smaller);
+        }
 
         const GLint nearest = texture.mipmaps ? GL_NEAREST_MIPMAP_LINEAR : GL_NEAREST;
         const GLint linear = texture.mipmaps ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR;
@@ -169,7 +177,6 @@ void SceneGl::uploadTextures(const Scene& scene) {
         gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, texture.linearFilter ? GL_LINEAR : GL_NEAREST);
         gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrapMode(texture.wrapU));
         gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrapMode(texture.wrapV));
-        if (texture.mipmaps) gl.GenerateMipmap(GL_TEXTURE_2D);
         context_->check(fmt::format("{}: texture \"{}\"", scene.name, texture.name));
     }
 }

@@ -45,7 +45,6 @@ namespace earthshine::raster {
     X(GenFramebuffers, GENFRAMEBUFFERS)                 \
     X(GenTextures, GENTEXTURES)                         \
     X(GenVertexArrays, GENVERTEXARRAYS)                 \
-    X(GenerateMipmap, GENERATEMIPMAP)                   \
     X(GetError, GETERROR)                               \
     X(GetIntegerv, GETINTEGERV)                         \
     X(GetProgramInfoLog, GETPROGRAMINFOLOG)             \

@@ -1,8 +1,8 @@
 #include "raster/trace/sampled_texture.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <tuple>
 
 #include <glm/glm.hpp>
 
@@ -12,10 +12,6 @@ namespace {
 
 float decoded(float encoded) {
     return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
-}
-
-float encodedFrom(float linear) {
-    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
 }
 
 const std::array<float, 256>& decodedBytes() {
@@ -51,56 +47,13 @@ float tame(float texels) {
 
 SampledTexture::SampledTexture(const raster::Texture& texture)
     : isSrgb_(texture.isSrgb), linearFilter_(texture.linearFilter), wrapU_(texture.wrapU), wrapV_(texture.wrapV) {
-    Level first;
-    first.widthPx = texture.widthPx;
-    first.heightPx = texture.heightPx;
-    if (texture.rgba16.empty())
-        first.rgba8 = texture.rgba8.data();
-    else
-        first.rgba16 = texture.rgba16.data();
-    levels_.push_back(std::move(first));
-    if (texture.mipmaps)
-        while (levels_.back().widthPx > 1 || levels_.back().heightPx > 1) addSmallerLevel();
-}
-
-/// Each texel is what a linear filter reads at its centre in the larger level, as Mesa makes mipmaps; for even sizes
-/// that is the mean of four.
-void SampledTexture::addSmallerLevel() {
-    const Level& from = levels_.back();
-    Level to;
-    to.widthPx = std::max(from.widthPx / 2, 1);
-    to.heightPx = std::max(from.heightPx / 2, 1);
-    const std::size_t count = 4 * std::size_t(to.widthPx) * std::size_t(to.heightPx);
-    if (from.rgba8)
-        to.owned8.resize(count);
-    else
-        to.owned16.resize(count);
-    const auto along = [](int i, int toSize, int fromSize) {
-        const float at = (float(i) + 0.5f) * float(fromSize) / float(toSize) - 0.5f;
-        const int low = int(std::floor(at));
-        return std::tuple(std::clamp(low, 0, fromSize - 1), std::clamp(low + 1, 0, fromSize - 1), at - float(low));
+    if (texture.mipmaps) smaller_ = raster::smallerLevels(texture);
+    const auto add = [this](const auto& from) {
+        levels_.push_back({from.widthPx, from.heightPx, from.rgba16.empty() ? from.rgba8.data() : nullptr,
+                           from.rgba16.empty() ? nullptr : from.rgba16.data()});
     };
-    for (int y = 0; y < to.heightPx; ++y)
-        for (int x = 0; x < to.widthPx; ++x) {
-            const auto [x0, x1, fx] = along(x, to.widthPx, from.widthPx);
-            const auto [y0, y1, fy] = along(y, to.heightPx, from.heightPx);
-            glm::vec4 value = glm::mix(glm::mix(texel(from, x0, y0), texel(from, x1, y0), fx),
-                                       glm::mix(texel(from, x0, y1), texel(from, x1, y1), fx), fy);
-            if (isSrgb_) value = {encodedFrom(value.x), encodedFrom(value.y), encodedFrom(value.z), value.w};
-            const std::size_t at = 4 * (std::size_t(y) * std::size_t(to.widthPx) + std::size_t(x));
-            for (std::size_t c = 0; c < 4; ++c) {
-                if (from.rgba8)
-                    to.owned8[at + c] = std::uint8_t(std::lround(value[int(c)] * 255.0f));
-                else
-                    to.owned16[at + c] = std::uint16_t(std::lround(value[int(c)] * 65535.0f));
-            }
-        }
-    levels_.push_back(std::move(to));
-    Level& added = levels_.back();
-    if (added.owned16.empty())
-        added.rgba8 = added.owned8.data();
-    else
-        added.rgba16 = added.owned16.data();
+    add(texture);
+    for (const raster::MipLevel& level : smaller_) add(level);
 }
 
 glm::vec4 SampledTexture::texel(const Level& level, int x, int y) const {

@@ -1,13 +1,13 @@
 #pragma once
 // Textures as GL filters them, on the CPU.
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
+#include "raster/scene/mipmaps.hpp"
 #include "raster/scene/scene.hpp"
 
 namespace earthshine::trace {
@@ -24,19 +24,18 @@ public:
     glm::vec4 sample(const glm::vec2& uv, const glm::vec2& dx, const glm::vec2& dy) const;
 
 private:
+    /// Borrowed texels, of the scene or of `smaller_`; one of the two pointers is null.
     struct Level {
-        int widthPx = 0, heightPx = 0;
-        const std::uint8_t* rgba8 = nullptr;
-        const std::uint16_t* rgba16 = nullptr;
-        std::vector<std::uint8_t> owned8;
-        std::vector<std::uint16_t> owned16;
+        int widthPx, heightPx;
+        const std::uint8_t* rgba8;
+        const std::uint16_t* rgba16;
     };
     glm::vec4 texel(const Level& level, int x, int y) const;
     glm::vec4 sampleLevel(const glm::vec2& uv, int level) const;
-    void addSmallerLevel();
 
     bool isSrgb_, linearFilter_;
     raster::Wrap wrapU_, wrapV_;
+    std::vector<raster::MipLevel> smaller_;
     std::vector<Level> levels_;
 };
 

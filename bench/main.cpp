@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bench.hpp"
+#include "compute/cl.hpp"
 #include "compute/tuning.hpp"
 #include "earthshine/error.hpp"
 
@@ -58,13 +59,18 @@ private:
 }  // namespace
 
 const Variant& tuned() {
-    static const Variant variant{"tuned", {}};
+    static const Variant variant = [] {
+        Variant v{"tuned", {}};
+        v.options.profiling = true;
+        return v;
+    }();
     return variant;
 }
 
 const Variant& naive() {
     static const Variant variant = [] {
         Variant v{"naive", {}};
+        v.options.profiling = true;
         v.options.lanes = 1;
         v.options.storage = "image";
         v.options.rsmRecords = 0;
@@ -109,6 +115,8 @@ int main(int argc, char** argv) {
         bench::RatioReporter reporter;
         benchmark::RunSpecifiedBenchmarks(&reporter);
         return 0;
+    } catch (const cl::Error& error) {
+        fmt::print(stderr, "earthshine_bench: {}: {}\n", error.what(), clErrorName(error.err()));
     } catch (const BuildError& error) {
         fmt::print(stderr, "earthshine_bench: {}\n{}\n", error.what(), error.log());
     } catch (const UsageError& error) {

@@ -2,7 +2,8 @@
 //   E(x) = sum_lights V E_perp max(0, n.l)                          directional
 //        = sum_lights V I f(angle) g(|d|) max(0, n.l) / |d|^2       spot; falloffs of KHR_lights_punctual
 //   V: the point is no deeper than the map's nearest texel, plus a bias of (constant + slope x tan(angle to n)) texels,
-//   so that it needs no constant of the scene's scale. Outside the map nothing casts a shadow.
+//   so that it needs no constant of the scene's scale; n is the mapped normal, so a strong normal map may want a larger
+//   constant. Outside the map nothing casts a shadow.
 //   Williams 1978, "Casting Curved Shadows on Curved Surfaces".
 //   in   inNormalWs     unit
 //   in   inDepth        m; 0 on sky

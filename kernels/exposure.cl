@@ -13,7 +13,8 @@ __kernel void exposure(__global const float2* restrict cells, __global float* re
     float2 sum = 0.0f;
     if (params.automatic)
         for (int i = 0; i < LUMINANCE_CELLS_X * LUMINANCE_CELLS_Y; ++i) sum += cells[i];
-    float factor = exp2(params.stops);
-    if (sum.y > 0.0f) factor *= params.middleGrey / exp2(sum.x / sum.y);
-    *outExposure = factor;
+    float stops = sum.y > 0.0f ? params.stops + log2(params.middleGrey) - sum.x / sum.y : params.stops;
+    VfloatLanes factor;
+    factor.v = es_exp2((vfloat)(stops));
+    *outExposure = factor.lane[0];
 }

@@ -1,6 +1,6 @@
 // luminance_sum: the logarithms of the picture's luminance, summed over cells of a fixed grid.
 //   A cell's sum is (sum of log2 L, number of pixels) over its pixels that are not sky and not black; exposure.cl adds the
-//   cells in a fixed order, so the same picture gives the same exposure at any width and on any number of cores.
+//   cells in a fixed order, so a picture has one exposure on a device, whatever the number of its cores.
 //   in   inRadiance  cd/m^2
 //   in   inDepth     m; 0 on sky
 //   out  outCells    LUMINANCE_CELLS_X x LUMINANCE_CELLS_Y float2

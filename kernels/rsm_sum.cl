@@ -6,7 +6,7 @@
 //   in   lights         LightParams
 //   out  outIrradiance  lx, >= 0, finite; 0 on sky
 //   Work 2D, one item per LANES pixels of a row from firstRowPx on, any local size; items past the edge return. The host
-//   launches bands of rows, so that no launch outlasts a display driver's patience.
+//   launches bands of rows, so that progress shows and launches stay short.
 
 #include "rsm.clh"
 #include "rsm_sum_params.h"

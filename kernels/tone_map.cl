@@ -14,7 +14,7 @@
 static vint displayByte(vfloat x, int curve) {
     x = max(x, 0.0f);
     if (curve == TONE_CURVE_FILMIC) {
-        x = min(x, 1e6f);  // inf / inf
+        x = min(x, 1e6f);  // far beyond white: the squares of larger ones overflow
         x = x * vmad(2.51f, x, 0.03f) / vmad(x, vmad(2.43f, x, 0.59f), 0.14f);
     }
     x = min(x, 1.0f);

@@ -1,5 +1,6 @@
 // unpack: plain pixels, as the host or GL hands them over, into a surface.
-//   The door of the OpenCL half: what is not finite becomes 0 here, so that no later stage meets a NaN or an infinity.
+//   The door of the OpenCL half: what is not finite becomes 0 here and the rest is cut to +-1e15, so that no later stage
+//   meets a NaN or an infinity, nor makes one.
 //   in   pixels   UnpackParams.format, rows top to bottom without padding
 //   out  outSurface   the rows [firstRowPx; firstRowPx + heightPx); one number a pixel of R32F, else three (alpha is dropped)
 //   Work 2D, one item per LANES pixels of a row, any local size; items past the edge return.
@@ -8,11 +9,14 @@
 #include "unpack_params.h"
 
 // 0 where the exponent is all ones. By bits: a compiler may take x == x for true.
-static vfloat finiteOrZero(vfloat v) { return vselect((asVint(v) & 0x7f800000) == 0x7f800000, 0.0f, v); }
+static vfloat sanitised(vfloat v) {
+    vfloat finite = vselect((asVint(v) & 0x7f800000) == 0x7f800000, 0.0f, v);
+    return min(max(finite, -1e15f), 1e15f);
+}
 
 static vfloat floatFromHalf(vuint half_) {
     vuint magnitude = half_ & 0x7fffu;
-    vfloat v = asVfloat(magnitude << 13) * 0x1p112f;  // moved into place: 2^-112 of its value, denormals included
+    vfloat v = asVfloat(magnitude << 13) * 0x1p112f;  // moved into place: 2^-112 of its value
     v = vselect(asVint(magnitude) >= 0x7c00, 0.0f, v);  // infinity and NaN
     return asVfloat(asVuint(v) | ((half_ & 0x8000u) << 16));
 }
@@ -86,7 +90,7 @@ __kernel void unpack(__global const uchar* restrict pixels, SURFACE_OUT(outSurfa
         }
         v = make3(r.v, g.v, b.v);
     }
-    v = make3(finiteOrZero(v.x), finiteOrZero(v.y), finiteOrZero(v.z));
+    v = make3(sanitised(v.x), sanitised(v.y), sanitised(v.z));
 
     px.y += params.firstRowPx;
     if (params.format == UNPACK_R32F)

@@ -8,6 +8,7 @@ namespace earthshine::cli {
 
 void addDeviceOptions(Options& options, DeviceArguments& arguments) {
     DeviceOptions& o = arguments.options;
+    o.profiling = true;  // every subcommand shows stage times
     options.group("OpenCL device");
     options.text("--device", "N|NAME", arguments.spec,
                  "number or part of the name, see `earthshine devices` [$EARTHSHINE_DEVICE, else the first usable GPU, "

@@ -21,6 +21,10 @@ std::string clErrorName(cl_int code) {
         {CL_IMAGE_FORMAT_NOT_SUPPORTED, "CL_IMAGE_FORMAT_NOT_SUPPORTED"},
         {CL_BUILD_PROGRAM_FAILURE, "CL_BUILD_PROGRAM_FAILURE"},
         {CL_MAP_FAILURE, "CL_MAP_FAILURE"},
+        {CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST, "CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST"},
+        {CL_INVALID_HOST_PTR, "CL_INVALID_HOST_PTR"},
+        {CL_INVALID_KERNEL, "CL_INVALID_KERNEL"},
+        {CL_INVALID_EVENT_WAIT_LIST, "CL_INVALID_EVENT_WAIT_LIST"},
         {CL_INVALID_VALUE, "CL_INVALID_VALUE"},
         {CL_INVALID_DEVICE, "CL_INVALID_DEVICE"},
         {CL_INVALID_CONTEXT, "CL_INVALID_CONTEXT"},
@@ -46,6 +50,7 @@ std::string clErrorName(cl_int code) {
         {CL_INVALID_BUFFER_SIZE, "CL_INVALID_BUFFER_SIZE"},
         {CL_INVALID_GLOBAL_WORK_SIZE, "CL_INVALID_GLOBAL_WORK_SIZE"},
         {-1001, "CL_PLATFORM_NOT_FOUND_KHR"},
+        {-9999, "NVIDIA: illegal memory access"},
     };
     for (const auto& entry : kNames)
         if (entry.code == code) return fmt::format("{} ({})", entry.name, code);

@@ -1,5 +1,5 @@
 #pragma once
-// The official C++ bindings, with exceptions. Only compute/, stages/ and pipeline/ see them.
+// The official C++ bindings, with exceptions. Users of the library never see them.
 
 #define CL_HPP_ENABLE_EXCEPTIONS
 #define CL_HPP_TARGET_OPENCL_VERSION 120
@@ -13,12 +13,9 @@ namespace earthshine {
 /// "CL_OUT_OF_RESOURCES (-5)".
 std::string clErrorName(cl_int code);
 
-/// Runs `body`; a cl::Error becomes a DeviceError "what: clCall: CL_NAME (code) on \"device\"".
-template <class Body>
-auto clChecked(const std::string& what, const std::string& device, Body&& body);
-
 [[noreturn]] void throwDeviceError(const std::string& what, const std::string& device, const cl::Error& error);
 
+/// Runs `body`; a cl::Error becomes a DeviceError "what: clCall: CL_NAME (code) on \"device\"".
 template <class Body>
 auto clChecked(const std::string& what, const std::string& device, Body&& body) {
     try {

@@ -38,19 +38,16 @@ const char* typeName(cl_device_type type) {
 }
 
 std::vector<std::string> usableImageFormats(const cl::Context& context) {
-    std::vector<cl::ImageFormat> readable, writable;
-    context.getSupportedImageFormats(CL_MEM_READ_ONLY, CL_MEM_OBJECT_IMAGE2D, &readable);
-    context.getSupportedImageFormats(CL_MEM_WRITE_ONLY, CL_MEM_OBJECT_IMAGE2D, &writable);
-    const auto holds = [](const std::vector<cl::ImageFormat>& list, const cl::ImageFormat& wanted) {
-        return std::any_of(list.begin(), list.end(), [&](const cl::ImageFormat& f) {
-            return f.image_channel_order == wanted.image_channel_order &&
-                   f.image_channel_data_type == wanted.image_channel_data_type;
-        });
-    };
+    std::vector<cl::ImageFormat> supported;
+    context.getSupportedImageFormats(CL_MEM_READ_WRITE, CL_MEM_OBJECT_IMAGE2D, &supported);
     std::vector<std::string> names;
     for (PixelFormat format : {PixelFormat::R32F, PixelFormat::RGBA16F, PixelFormat::RGBA32F, PixelFormat::RGBA8}) {
         const cl::ImageFormat wanted = clImageFormat(format);
-        if (holds(readable, wanted) && holds(writable, wanted)) names.emplace_back(formatName(format));
+        const bool isSupported = std::any_of(supported.begin(), supported.end(), [&](const cl::ImageFormat& f) {
+            return f.image_channel_order == wanted.image_channel_order &&
+                   f.image_channel_data_type == wanted.image_channel_data_type;
+        });
+        if (isSupported) names.emplace_back(formatName(format));
     }
     return names;
 }
@@ -132,13 +129,6 @@ std::string lowered(std::string text) {
     return text;
 }
 
-const DeviceCaps& byIndex(const std::vector<DeviceCaps>& all, const std::string& spec) {
-    const std::size_t index = std::strtoul(spec.c_str(), nullptr, 10);
-    if (spec.size() > 6 || index >= all.size())
-        throw UsageError(fmt::format("device: there is no number {}; 'earthshine devices' lists {}", spec, all.size()));
-    return all[index];
-}
-
 const DeviceCaps& byName(const std::vector<DeviceCaps>& all, const std::string& spec) {
     std::vector<const DeviceCaps*> fits;
     const std::string wanted = lowered(spec);
@@ -150,7 +140,7 @@ const DeviceCaps& byName(const std::vector<DeviceCaps>& all, const std::string& 
         std::string names;
         for (const DeviceCaps& caps : all)
             names += fmt::format("{}\"{}\" ({})", names.empty() ? "" : ", ", caps.name, caps.platformName);
-        throw UsageError(fmt::format("device: nothing here is called '{}'; there is {}", spec, names));
+        throw UsageError(fmt::format("device: nothing here has the number or name '{}'; there is {}", spec, names));
     }
     if (fits.size() > 1)
         throw UsageError(fmt::format("device: '{}' fits \"{}\" and \"{}\"; say more, or use a number", spec,
@@ -180,7 +170,8 @@ DeviceCaps selectDevice(const std::string& spec, std::string* why) {
     if (!wanted.empty()) {
         const bool isNumber =
             std::all_of(wanted.begin(), wanted.end(), [](unsigned char c) { return std::isdigit(c); });
-        chosen = isNumber ? &byIndex(all, wanted) : &byName(all, wanted);
+        const bool isIndex = isNumber && wanted.size() < 6 && std::stoul(wanted) < all.size();  // "4090" may be a name
+        chosen = isIndex ? &all[std::stoul(wanted)] : &byName(all, wanted);
         if (!chosen->unusable.empty())
             throw DeviceError(fmt::format("device: \"{}\" cannot be used: {}", chosen->name, chosen->unusable));
     } else {
@@ -215,7 +206,6 @@ Device::Device(const DeviceCaps& caps, const DeviceOptions& options) : impl_(std
                                         options.profiling ? cl::QueueProperties::Profiling : cl::QueueProperties::None);
         return 0;
     });
-    if (impl_->tuning.storage == Storage::Image) checkImageFormats(*impl_);
     log(LogLevel::Debug,
         fmt::format("device: \"{}\": {} lanes, {} storage, {} x {} work-items a group", caps.name, impl_->tuning.lanes,
                     storageName(impl_->tuning.storage), impl_->tuning.localSizePx[0], impl_->tuning.localSizePx[1]));

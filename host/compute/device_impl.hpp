@@ -34,9 +34,4 @@ struct Device::Impl {
     cl::Buffer makeBuffer(std::size_t bytes, cl_mem_flags flags = CL_MEM_READ_WRITE);
 };
 
-/// The work-items a group of `kernel`: the tuning table's, cut to what the kernel and the device allow.
-struct LocalSize {
-    std::size_t x, y;
-};
-
 }  // namespace earthshine

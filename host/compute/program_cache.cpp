@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <thread>
 
 #include "earthshine/error.hpp"
 #include "earthshine/log.hpp"
@@ -51,7 +53,8 @@ std::vector<unsigned char> readEntry(const fs::path& path, const std::string& ke
 void writeEntry(const fs::path& path, const std::string& key, const std::vector<unsigned char>& binary) {
     std::error_code error;
     fs::create_directories(path.parent_path(), error);
-    const fs::path temporary = fmt::format("{}.{}.tmp", path.string(), ::getpid());
+    const fs::path temporary = fmt::format("{}.{}.{}.tmp", path.string(), ::getpid(),
+                                           std::hash<std::thread::id>()(std::this_thread::get_id()));
     {
         std::ofstream out(temporary, std::ios::binary);
         const Header header{kMagic, key.size(), binary.size(), hashOf(binary.data(), binary.size())};
@@ -66,6 +69,7 @@ void writeEntry(const fs::path& path, const std::string& key, const std::vector<
         }
     }
     fs::rename(temporary, path, error);
+    if (error) fs::remove(temporary, error);
 }
 
 cl::Program buildFromSource(const cl::Context& context, const cl::Device& device, const std::string& name,
@@ -100,9 +104,10 @@ cl::Program buildProgram(const cl::Context& context, const cl::Device& device, c
     if (cacheFolder.empty()) return buildFromSource(context, device, name, source, options, deviceName);
 
     const cl::Platform platform(device.getInfo<CL_DEVICE_PLATFORM>());
-    const std::string key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", deviceName, device.getInfo<CL_DEVICE_VENDOR>(),
-                                        device.getInfo<CL_DRIVER_VERSION>(), device.getInfo<CL_DEVICE_VERSION>(),
-                                        platform.getInfo<CL_PLATFORM_VERSION>(), options, source);
+    const std::string key =
+        fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", platform.getInfo<CL_PLATFORM_NAME>(), deviceName,
+                    device.getInfo<CL_DEVICE_VENDOR>(), device.getInfo<CL_DRIVER_VERSION>(),
+                    device.getInfo<CL_DEVICE_VERSION>(), platform.getInfo<CL_PLATFORM_VERSION>(), options, source);
     const fs::path path = fs::path(cacheFolder) / fmt::format("{}-{:016x}.bin", name, hashOf(key.data(), key.size()));
 
     if (std::vector<unsigned char> binary = readEntry(path, key); !binary.empty()) {

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <cstring>
-
 #include "earthshine/error.hpp"
 
 namespace earthshine {
@@ -28,7 +25,7 @@ Surface::Surface(const Device& device, PixelFormat format, Extent extent) : form
     const int channels = format == PixelFormat::R32F ? 1 : 3;
     const int pitch = (extent.widthPx + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
     const auto planeFloats = std::size_t(pitch) * std::size_t(extent.heightPx);
-    if (planeFloats * std::size_t(channels) > std::size_t(INT32_MAX))
+    if (planeFloats * 4 > std::size_t(INT32_MAX))  // unpack counts four channels a pixel
         throw DeviceError(fmt::format("surface: {} x {} is more than a kernel's 32-bit offsets reach", extent.widthPx,
                                       extent.heightPx));
     layout_ = {extent.widthPx, extent.heightPx, pitch, int(planeFloats)};
@@ -47,24 +44,10 @@ Surface::Surface(const Device& device, PixelFormat format, Extent extent) : form
     }
 }
 
-void checkImageFormats(Device::Impl& device) {
-    constexpr int kSize = 4;
-    for (PixelFormat format : {PixelFormat::R32F, PixelFormat::RGBA16F, PixelFormat::RGBA32F}) {
-        const std::string what =
-            fmt::format("image format {} (use --storage planar if the device cannot)", formatName(format));
-        std::array<std::uint8_t, kSize * kSize * 16> in{}, out{};
-        const std::size_t bytes = bytesPerPixel(format) * kSize * kSize;
-        for (std::size_t i = 0; i < bytes; ++i) in[i] = std::uint8_t((i * 37) % 60);  // no exponent of all ones
-        device.checked(what, [&] {
-            const cl::Image2D image(device.context, CL_MEM_READ_WRITE, clImageFormat(format), kSize, kSize);
-            const cl::array<cl::size_type, 3> origin{0, 0, 0}, region{kSize, kSize, 1};
-            device.queue.enqueueWriteImage(image, CL_TRUE, origin, region, 0, 0, in.data());
-            device.queue.enqueueReadImage(image, CL_TRUE, origin, region, 0, 0, out.data());
-            return 0;
-        });
-        if (std::memcmp(in.data(), out.data(), bytes) != 0)
-            throw DeviceError(fmt::format("{}: what is written does not read back on \"{}\"", what, device.caps.name));
-    }
+void requireExtent(const char* stage, const char* name, const Surface& surface, Extent extent) {
+    if (surface.extent() == extent) return;
+    throw DeviceError(fmt::format("{}: {} is {} x {}, must be {} x {}", stage, name, surface.extent().widthPx,
+                                  surface.extent().heightPx, extent.widthPx, extent.heightPx));
 }
 
 }  // namespace earthshine

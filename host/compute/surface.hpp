@@ -32,8 +32,7 @@ private:
 
 cl::ImageFormat clImageFormat(PixelFormat format);
 
-/// Writes and reads back a small image of each format that surfaces use: drivers list formats that they then get wrong
-/// (PoCL 3.1: R16F). Throws DeviceError naming the format.
-void checkImageFormats(Device::Impl& device);
+/// Throws DeviceError "stage: name is ..., must be ..." if a surface is not of the extent that a stage needs.
+void requireExtent(const char* stage, const char* name, const Surface& surface, Extent extent);
 
 }  // namespace earthshine

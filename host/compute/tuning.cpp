@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "compute/quirks.hpp"
 #include "earthshine/error.hpp"
@@ -13,31 +14,43 @@ const char* storageName(Storage storage) {
     return storage == Storage::Image ? "image" : "planar";
 }
 
+namespace {
+constexpr const char* kSurfaceFormats[] = {"R32F", "RGBA16F", "RGBA32F"};
+}
+
 Tuning defaultTuning(const DeviceCaps& caps) {
     Tuning t;
+    const bool hasImages = std::all_of(std::begin(kSurfaceFormats), std::end(kSurfaceFormats), [&](const char* format) {
+        return std::find(caps.imageFormats.begin(), caps.imageFormats.end(), format) != caps.imageFormats.end();
+    });
     if (runsOnLlvmpipe(caps)) {
         // Mesa's llvmpipe vectorises across work-items by itself, and its texture unit is its fast path.
         t.lanes = 1;
-        t.storage = caps.images ? Storage::Image : Storage::Planar;
+        t.storage = hasImages ? Storage::Image : Storage::Planar;
         t.localSizePx[0] = 8;
         t.localSizePx[1] = 8;
-        t.reason = "rusticl on llvmpipe: one pixel a work-item, images";
+        t.reason = "rusticl on llvmpipe";
     } else if (caps.type == "CPU") {
-        // Vectors as wide as the registers, whole cache lines of planes. Two rows of a group share what they gather.
+        // Vectors as wide as the registers, whole cache lines of planes.
         t.lanes = caps.nativeFloatWidth >= 16 ? 16 : caps.nativeFloatWidth >= 8 ? 8 : 4;
         t.storage = Storage::Planar;
         t.localSizePx[0] = 4;
         t.localSizePx[1] = 2;
-        t.reason = fmt::format("CPU with a native width of {} floats: {} pixels a work-item, planes",
-                               caps.nativeFloatWidth, t.lanes);
+        t.reason = fmt::format("CPU with a native width of {} floats", caps.nativeFloatWidth);
     } else {
         t.lanes = 1;
-        t.storage = caps.images && caps.imageFormats.size() >= 3 ? Storage::Image : Storage::Planar;
+        t.storage = hasImages ? Storage::Image : Storage::Planar;
         t.localSizePx[0] = 16;
         t.localSizePx[1] = 8;
-        t.reason = t.storage == Storage::Image ? "GPU: one pixel a work-item, images"
-                                               : "no images: one pixel a work-item, planes";
+        t.reason = caps.type;
     }
+    t.reason += fmt::format(": {} pixel{} a work-item, {}", t.lanes, t.lanes == 1 ? "" : "s",
+                            t.storage == Storage::Image ? "images"
+                            : hasImages                 ? "planes"
+                                                        : "planes for want of images");
+    const int maxItems = int(std::max<std::size_t>(caps.maxWorkGroupSize, 1));
+    t.localSizePx[0] = std::min(t.localSizePx[0], maxItems);
+    t.localSizePx[1] = std::min(t.localSizePx[1], maxItems / t.localSizePx[0]);
     return t;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The tuning table: which lanes, storage and group size a device gets. Measured by bench/ (bench/README.md).
+// The tuning table: which lanes, storage and group size a device gets. bench/README.md has the measurements behind it.
 
 #include "earthshine/device.hpp"
 

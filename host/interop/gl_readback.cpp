@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <type_traits>
+
 #include "earthshine/error.hpp"
 #include "earthshine/pipeline.hpp"
 
@@ -10,7 +12,9 @@ namespace earthshine {
 namespace {
 
 // The few constants and functions of OpenGL 1.1 to 3.0 that a read-back needs; the library links no GL.
-constexpr unsigned kTexture2d = 0x0DE1, kTextureBinding2d = 0x8069, kPackAlignment = 0x0D05, kPixelPackBuffer = 0x88EB;
+constexpr unsigned kTexture2d = 0x0DE1, kTextureBinding2d = 0x8069, kTextureWidth = 0x1000, kTextureHeight = 0x1001;
+constexpr unsigned kPixelPackBuffer = 0x88EB, kPixelPackBufferBinding = 0x88ED;
+constexpr unsigned kPackRowLength = 0x0D02, kPackSkipRows = 0x0D03, kPackSkipPixels = 0x0D04, kPackAlignment = 0x0D05;
 constexpr unsigned kRed = 0x1903, kRgba = 0x1908, kFloat = 0x1406, kHalfFloat = 0x140B, kUnsignedByte = 0x1401;
 
 struct GlReadback {
@@ -19,6 +23,7 @@ struct GlReadback {
     void (*bindBuffer)(unsigned, unsigned);
     void (*pixelStorei)(unsigned, int);
     void (*getTexImage)(unsigned, int, unsigned, unsigned, void*);
+    void (*getTexLevelParameteriv)(unsigned, int, unsigned, int*);
     unsigned (*getError)();
 
     explicit GlReadback(const GlGetProcAddress& find) {
@@ -31,7 +36,14 @@ struct GlReadback {
         load(bindBuffer, "glBindBuffer");
         load(pixelStorei, "glPixelStorei");
         load(getTexImage, "glGetTexImage");
+        load(getTexLevelParameteriv, "glGetTexLevelParameteriv");
         load(getError, "glGetError");
+    }
+
+    int integer(unsigned name) const {
+        int value = 0;
+        getIntegerv(name, &value);
+        return value;
     }
 
     HostImage read(const char* what, const GlTexture& texture) const {
@@ -41,15 +53,29 @@ struct GlReadback {
         const unsigned type = texture.format == PixelFormat::RGBA16F ? kHalfFloat
                               : texture.format == PixelFormat::RGBA8 ? kUnsignedByte
                                                                      : kFloat;
-        int bound = 0;
-        getIntegerv(kTextureBinding2d, &bound);
+        while (getError() != 0) {
+        }  // what the application left behind is not ours
+
+        const int boundTexture = integer(kTextureBinding2d), boundBuffer = integer(kPixelPackBufferBinding);
+        constexpr unsigned kPacking[] = {kPackRowLength, kPackSkipRows, kPackSkipPixels, kPackAlignment};
+        int packing[4], width = 0, height = 0;
+        for (int i = 0; i < 4; ++i) packing[i] = integer(kPacking[i]);
         bindTexture(kTexture2d, texture.name);
         bindBuffer(kPixelPackBuffer, 0);
-        pixelStorei(kPackAlignment, 4);
-        getTexImage(kTexture2d, 0, format, type, image.data());
-        bindTexture(kTexture2d, unsigned(bound));
-        if (const unsigned error = getError(); error != 0)
-            throw DeviceError(fmt::format("reading back {}: OpenGL error 0x{:04x}", what, error));
+        for (int i = 0; i < 4; ++i) pixelStorei(kPacking[i], kPacking[i] == kPackAlignment ? 4 : 0);
+        getTexLevelParameteriv(kTexture2d, 0, kTextureWidth, &width);
+        getTexLevelParameteriv(kTexture2d, 0, kTextureHeight, &height);
+        const bool isOfExtent = Extent{width, height} == texture.extent;
+        if (isOfExtent) getTexImage(kTexture2d, 0, format, type, image.data());
+        const unsigned error = getError();
+
+        for (int i = 0; i < 4; ++i) pixelStorei(kPacking[i], packing[i]);
+        bindBuffer(kPixelPackBuffer, unsigned(boundBuffer));
+        bindTexture(kTexture2d, unsigned(boundTexture));
+        if (error != 0) throw DeviceError(fmt::format("reading back {}: OpenGL error 0x{:04x}", what, error));
+        if (!isOfExtent)
+            throw DeviceError(fmt::format("reading back {}: the texture is {} x {}, not {} x {}", what, width, height,
+                                          texture.extent.widthPx, texture.extent.heightPx));
         return image;
     }
 };

@@ -46,6 +46,7 @@ void checkInputs(const FrameInputs& frame) {
     checkImage("depth", g.depth, PixelFormat::R32F, extent);
     if (!g.motion.empty()) checkImage("motion", g.motion, PixelFormat::RGBA16F, extent);
     if (!g.emission.empty()) checkImage("emission", g.emission, PixelFormat::RGBA16F, extent);
+    if (const std::string fault = faultOf(frame.camera); !fault.empty()) throw InputError("camera: " + fault);
     if (frame.lights.size() != frame.lightMaps.size())
         throw InputError(fmt::format("lights: {} lights, but maps of {}", frame.lights.size(), frame.lightMaps.size()));
     if (frame.lights.empty()) return;
@@ -55,6 +56,7 @@ void checkInputs(const FrameInputs& frame) {
     for (std::size_t i = 0; i < frame.lights.size(); ++i) {
         const std::string light = fmt::format("lights[{}]: ", i);
         const LightMaps& maps = frame.lightMaps[i];
+        if (const std::string fault = faultOf(frame.lights[i]); !fault.empty()) throw InputError(light + fault);
         checkImage(light + "RSM depth", maps.rsmDepth, PixelFormat::R32F, rsm);
         checkImage(light + "RSM normal", maps.rsmNormalWs, PixelFormat::RGBA16F, rsm);
         checkImage(light + "RSM flux", maps.rsmFlux, PixelFormat::RGBA32F, rsm);
@@ -63,6 +65,24 @@ void checkInputs(const FrameInputs& frame) {
 }
 
 HostTransport::HostTransport(const Device& device) : device_(device), unpack_(device) {}
+
+// The maps of all lights stand below one another: in an image, whose height devices limit, or in planes and records,
+// which kernels reach with 32-bit byte offsets.
+void HostTransport::checkAtlas(const char* what, Extent map, int mapCount) const {
+    const DeviceCaps& caps = device_.caps();
+    const auto rows = std::int64_t(map.heightPx) * mapCount;
+    if (device_.tuning().storage == Storage::Image &&
+        (rows > std::int64_t(caps.maxImageSizePx[1]) || map.widthPx > std::int64_t(caps.maxImageSizePx[0])))
+        throw DeviceError(
+            fmt::format("{} {} of {} x {} are more than an image of \"{}\" holds ({} rows); make them smaller, or use "
+                        "planar storage",
+                        mapCount, what, map.widthPx, map.heightPx, caps.name, caps.maxImageSizePx[1]));
+    constexpr std::int64_t kMaxTexels = (std::int64_t(1) << 32) / std::int64_t(sizeof(RsmRecord));
+    if (rows * map.widthPx >= kMaxTexels)
+        throw DeviceError(
+            fmt::format("{} {} of {} x {} are more than the {} texels that kernels can address; make them smaller",
+                        mapCount, what, map.widthPx, map.heightPx, kMaxTexels));
+}
 
 cl::Buffer HostTransport::borrow(const ImageView& image) {
     // In place: page-aligned memory, whose last page is readable to its end, so the size may round up to 64.
@@ -102,6 +122,19 @@ void HostTransport::enqueue(const FrameInputs& frame, FrameSurfaces& out) {
     const Extent shadow = lightCount > 0 ? frame.lightMaps[0].shadowDepth.extent : Extent{1, 1};
     const int mapCount = lightCount > 0 ? lightCount : 1;  // without a light, one texel that nobody reads
 
+    checkAtlas("shadow maps", shadow, mapCount);
+    checkAtlas("RSMs", rsm, mapCount);
+
+    std::vector<LightParams> lights;
+    for (const Light& light : frame.lights) lights.push_back(makeLightParams(light, rsm, shadow));
+    lights.resize(std::size_t(mapCount));
+    out.lights = device_.impl().makeBuffer(sizeof(LightParams) * lights.size());
+    Device::Impl& impl = device_.impl();
+    impl.checked("writing the lights", [&] {
+        impl.queue.enqueueWriteBuffer(out.lights, CL_TRUE, 0, sizeof(LightParams) * lights.size(), lights.data());
+        return 0;
+    });
+
     ensure(device_, out.albedo, PixelFormat::RGBA16F, extent);
     ensure(device_, out.normalWs, PixelFormat::RGBA16F, extent);
     ensure(device_, out.depth, PixelFormat::R32F, extent);
@@ -121,7 +154,8 @@ void HostTransport::enqueue(const FrameInputs& frame, FrameSurfaces& out) {
     ensure(device_, out.rsm.flux, PixelFormat::RGBA32F, rsmAtlas);
     ensure(device_, out.shadowDepth, PixelFormat::R32F, {shadow.widthPx, shadow.heightPx * mapCount});
     out.shadowExtent = shadow;
-    if (out.rsm.sizePx != rsm.widthPx || out.rsm.lightCount != lightCount || !out.rsm.records())
+    if (device_.tuning().rsmRecords &&
+        (out.rsm.sizePx != rsm.widthPx || out.rsm.lightCount != lightCount || !out.rsm.records()))
         out.rsm.records = device_.impl().makeBuffer(sizeof(RsmRecord) * std::size_t(rsmAtlas.widthPx) *
                                                     std::size_t(rsmAtlas.heightPx));
     out.rsm.sizePx = rsm.widthPx;
@@ -132,16 +166,6 @@ void HostTransport::enqueue(const FrameInputs& frame, FrameSurfaces& out) {
         enqueueMaps(frame.lightMaps, &LightMaps::rsmFlux, out.rsm.flux);
         enqueueMaps(frame.lightMaps, &LightMaps::shadowDepth, out.shadowDepth);
     }
-
-    std::vector<LightParams> lights;
-    for (const Light& light : frame.lights) lights.push_back(makeLightParams(light, rsm, shadow));
-    lights.resize(std::size_t(mapCount));
-    out.lights = device_.impl().makeBuffer(sizeof(LightParams) * lights.size());
-    Device::Impl& impl = device_.impl();
-    impl.checked("writing the lights", [&] {
-        impl.queue.enqueueWriteBuffer(out.lights, CL_TRUE, 0, sizeof(LightParams) * lights.size(), lights.data());
-        return 0;
-    });
 }
 
 }  // namespace earthshine

@@ -1,7 +1,6 @@
 #pragma once
 // Transport `host`, the OpenCL half: plain images into surfaces, in place where the device shares the host's memory.
 
-#include <map>
 #include <vector>
 
 #include "earthshine/frame.hpp"
@@ -27,6 +26,7 @@ public:
 
 private:
     void enqueueMaps(const std::vector<LightMaps>& maps, ImageView LightMaps::*member, const Surface& surface);
+    void checkAtlas(const char* what, Extent map, int mapCount) const;
     cl::Buffer borrow(const ImageView& image);
 
     Device device_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "earthshine/error.hpp"
 #include "interop/host_transport.hpp"
@@ -31,7 +32,9 @@ struct Pipeline::Impl {
           exposureStage(d),
           toneMap(d),
           interleave(d),
-          exposure(d.impl().makeBuffer(sizeof(float))) {}
+          exposure(d.impl().makeBuffer(sizeof(float))) {
+        checkFormats();
+    }
 
     Device device;
     HostTransport transport;
@@ -56,14 +59,43 @@ struct Pipeline::Impl {
     std::vector<StageTime> times;
 
     void allocate() {
-        if (extent == inputs.depth.extent()) return;
-        extent = inputs.depth.extent();
+        const Extent wanted = inputs.depth.extent();
+        if (extent == wanted) return;
+        extent = {};  // what throws halfway is allocated again by the next run
         for (Surface* surface : {&directIrradiance, &indirectIrradiance, &direct, &color})
-            *surface = Surface(device, PixelFormat::RGBA32F, extent);
+            *surface = Surface(device, PixelFormat::RGBA32F, wanted);
         scratch = {};
-        display = device.impl().makeBuffer(4 * pixelCount());
-        pixels = device.impl().makeBuffer(16 * pixelCount());
+        const std::size_t count = std::size_t(wanted.widthPx) * std::size_t(wanted.heightPx);
+        display = device.impl().makeBuffer(4 * count);
+        pixels = device.impl().makeBuffer(16 * count);
+        extent = wanted;
     }
+    // Brings a few pixels in and out in every format that surfaces have: drivers list image formats that their kernels
+    // then read wrong (PoCL 3.1: R16F).
+    void checkFormats() {
+        constexpr Extent kExtent{5, 3};
+        HostImage in(PixelFormat::RGBA32F, kExtent), depth(PixelFormat::R32F, kExtent);
+        for (int i = 0; i < 15; ++i) {
+            for (int c = 0; c < 3; ++c) in.pixel(0, 0)[4 * i + c] = float(4 * i + c) / 8.0f - 3.0f;  // exact in half
+            in.pixel(0, 0)[4 * i + 3] = float(i % 2);
+            depth.pixel(0, 0)[i] = float(i % 2) * 7.25f;
+        }
+        const Surface depthSurface(device, PixelFormat::R32F, kExtent);
+        transport.enqueueImage(depth.view(), depthSurface, 0);
+        const cl::Buffer out = device.impl().makeBuffer(in.sizeBytes());
+        for (PixelFormat format : {PixelFormat::RGBA16F, PixelFormat::RGBA32F}) {
+            const Surface surface(device, format, kExtent);
+            const Borrowing borrowing(*this);
+            transport.enqueueImage(in.view(), surface, 0);
+            interleave.enqueue({surface, depthSurface}, out);
+            const HostImage back = readBuffer(out, PixelFormat::RGBA32F, kExtent);
+            if (std::memcmp(back.data(), in.data(), in.sizeBytes()) != 0)
+                throw DeviceError(fmt::format(
+                    "{} or R32F surfaces do not come back as written on \"{}\"; use {} storage", formatName(format),
+                    device.caps().name, device.tuning().storage == Storage::Image ? "planar" : "image"));
+        }
+    }
+
     std::size_t pixelCount() const { return std::size_t(extent.widthPx) * std::size_t(extent.heightPx); }
 
     Surface& scratchSurface() {
@@ -83,12 +115,15 @@ struct Pipeline::Impl {
         patternSize = count;
     }
 
-    // Bands of rows of about this many pairs of pixel and texel: some tenths of a second on two CPU cores.
+    // Bands of whole groups of rows, of about this many pairs of pixel and texel: some tenths of a second on two CPU
+    // cores, so that progress shows and a GPU's display stays alive.
     void sumInBands(const std::function<void(double)>& progress) {
         constexpr double kPairsPerLaunch = 5e8;
+        const int groupRows = device.tuning().localSizePx[1];
         const double pairsPerRow =
             double(extent.widthPx) * inputs.rsm.sizePx * double(inputs.rsm.sizePx) * std::max(inputs.rsm.lightCount, 1);
-        const int rows = std::clamp(int(kPairsPerLaunch / pairsPerRow) / 8 * 8, 8, std::max(extent.heightPx, 8));
+        const int rows =
+            std::max(int(std::min(kPairsPerLaunch / pairsPerRow, double(extent.heightPx))) / groupRows, 1) * groupRows;
         for (int first = 0; first < extent.heightPx; first += rows) {
             RsmSumParams band = params.sum;
             band.firstRowPx = first;
@@ -100,6 +135,24 @@ struct Pipeline::Impl {
             }
         }
     }
+
+    // While the device reads the caller's memory in place, nothing may leave before the queue is done with it.
+    class Borrowing {
+    public:
+        explicit Borrowing(Impl& owner) : owner_(owner) {}
+        Borrowing(const Borrowing&) = delete;
+        Borrowing& operator=(const Borrowing&) = delete;
+        ~Borrowing() {
+            try {
+                owner_.device.impl().queue.finish();
+            } catch (const cl::Error&) {  // already on the way out with the error that matters
+            }
+            owner_.transport.release();
+        }
+
+    private:
+        Impl& owner_;
+    };
 
     void finish() {
         Device::Impl& impl = device.impl();
@@ -123,8 +176,10 @@ struct Pipeline::Impl {
         impl.launches.clear();
     }
 
-    HostImage readBuffer(const cl::Buffer& buffer, PixelFormat format) {
-        HostImage image(format, extent);
+    HostImage readBuffer(const cl::Buffer& buffer, PixelFormat format) { return readBuffer(buffer, format, extent); }
+
+    HostImage readBuffer(const cl::Buffer& buffer, PixelFormat format, Extent imageExtent) {
+        HostImage image(format, imageExtent);
         Device::Impl& impl = device.impl();
         impl.checked("reading an output", [&] {
             impl.queue.enqueueReadBuffer(buffer, CL_TRUE, 0, image.sizeBytes(), image.data());
@@ -160,7 +215,9 @@ void Pipeline::run(const Settings& settings, const std::function<void(double)>& 
     Impl& p = *impl_;
     if (!p.hasFrame) throw UsageError("pipeline: setFrame() comes before run()");
     p.device.impl().launches.clear();
+    p.hasRun = false;
 
+    const Impl::Borrowing borrowing(p);
     p.transport.enqueue(p.frame, p.inputs);
     p.allocate();
     p.params = makeParams(settings, {makeViewRays(p.frame.camera, p.extent), p.inputs.rsm.sizePx,
@@ -185,7 +242,6 @@ void Pipeline::run(const Settings& settings, const std::function<void(double)>& 
     p.toneMap.enqueue({p.color, p.exposure, p.display}, p.params.toneMap);
 
     p.finish();
-    p.transport.release();
     p.collectTimes();
     p.hasRun = true;
     if (progress) progress(1.0);
@@ -218,11 +274,10 @@ HostImage Pipeline::toDisplay(const ImageView& radiance) {
     if (radiance.format != PixelFormat::RGBA32F || radiance.extent != p.extent)
         throw UsageError(fmt::format("toDisplay: takes RGBA32F of {} x {}", p.extent.widthPx, p.extent.heightPx));
     const cl::Buffer bytes = p.device.impl().makeBuffer(4 * p.pixelCount());
+    const Impl::Borrowing borrowing(p);
     p.transport.enqueueImage(radiance, p.scratchSurface(), 0);
     p.toneMap.enqueue({p.scratch, p.exposure, bytes}, p.params.toneMap);
-    HostImage image = p.readBuffer(bytes, PixelFormat::RGBA8);
-    p.transport.release();
-    return image;
+    return p.readBuffer(bytes, PixelFormat::RGBA8);
 }
 
 float Pipeline::exposure() const {

@@ -16,11 +16,10 @@ public:
         const cl::Buffer& lights;    ///< LightParams
         const Surface& outIrradiance;
     };
-    explicit DirectLightStage(const Device& device) : device_(device), kernel_(device, "direct_light") {}
+    explicit DirectLightStage(const Device& device) : kernel_(device, "direct_light") {}
     void enqueue(const Images& images, const DirectLightParams& params);
 
 private:
-    Device device_;
     Kernel kernel_;
 };
 

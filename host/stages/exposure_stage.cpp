@@ -8,6 +8,7 @@ ExposureStage::ExposureStage(const Device& device)
       cells_(device.impl().makeBuffer(sizeof(cl_float2) * LUMINANCE_CELLS_X * LUMINANCE_CELLS_Y)) {}
 
 void ExposureStage::enqueue(const Images& images, const ExposureParams& params) {
+    requireExtent("luminance_sum", "inDepth", images.depth, images.radiance.extent());
     if (params.automatic) {
         luminanceSum_.set("inRadiance", images.radiance).set("inDepth", images.depth).set("outCells", cells_);
         luminanceSum_.enqueueItems(LUMINANCE_CELLS_X, LUMINANCE_CELLS_Y);

@@ -17,11 +17,17 @@ bool isOrthographic(const glm::dmat4& clipFromView) {
     return clipFromView[2][3] == 0.0;
 }
 
+// A projection times any positive number is the same projection: the one whose w is the depth, or 1.
+glm::dmat4 normalised(const glm::mat4& clipFromView) {
+    const glm::dmat4 p(clipFromView);
+    return p / (isOrthographic(p) ? p[3][3] : -p[2][3]);
+}
+
 }  // namespace
 
 ViewRays makeViewRays(const Camera& camera, Extent extent) {
     const glm::dmat4 worldFromView = glm::inverse(glm::dmat4(camera.viewFromWorld));
-    const glm::dmat4 p(camera.clipFromView);
+    const glm::dmat4 p = normalised(camera.clipFromView);
     // NDC of texel px: x = stepX px + firstX, y likewise with rows downwards.
     const double stepX = 2.0 / extent.widthPx, firstX = 1.0 / extent.widthPx - 1.0;
     const double stepY = -2.0 / extent.heightPx, firstY = 1.0 - 1.0 / extent.heightPx;
@@ -48,7 +54,8 @@ ViewRays makeViewRays(const Camera& camera, Extent extent) {
 LightParams makeLightParams(const Light& light, Extent rsmExtent, Extent shadowExtent) {
     const glm::dmat4 viewFromWorld(light.camera.viewFromWorld);
     const glm::dmat4 worldFromView = glm::inverse(viewFromWorld);
-    const glm::dmat4 rows = glm::transpose(glm::dmat4(light.camera.clipFromView) * viewFromWorld);
+    const glm::dmat4 clipFromView = normalised(light.camera.clipFromView);
+    const glm::dmat4 rows = glm::transpose(clipFromView * viewFromWorld);
     LightParams params{};
     params.uRow = toF32x4(0.5 * (rows[3] + rows[0]));  // u = (x_ndc + 1) / 2
     params.vRow = toF32x4(0.5 * (rows[3] - rows[1]));  // v = (1 - y_ndc) / 2
@@ -63,8 +70,8 @@ LightParams makeLightParams(const Light& light, Extent rsmExtent, Extent shadowE
     params.coneScale = float(scale);
     params.coneOffset = float(-cosOuter * scale);
     params.inverseRange = light.rangeM > 0.0f ? 1.0f / light.rangeM : 0.0f;
-    const double halfX = 1.0 / double(light.camera.clipFromView[0][0]);
-    const double halfY = 1.0 / double(light.camera.clipFromView[1][1]);
+    const double halfX = 1.0 / clipFromView[0][0];
+    const double halfY = 1.0 / clipFromView[1][1];
     params.shadowTexelSize =
         float(std::max(std::fabs(2.0 * halfX / shadowExtent.widthPx), std::fabs(2.0 * halfY / shadowExtent.heightPx)));
     params.rsmTexelArea = texelPowerOnAxis(light, rsmExtent);

@@ -13,11 +13,10 @@ public:
         const Surface& color;
         const Surface& depth;
     };
-    explicit InterleaveStage(const Device& device) : device_(device), kernel_(device, "interleave") {}
+    explicit InterleaveStage(const Device& device) : kernel_(device, "interleave") {}
     void enqueue(const Images& images, const cl::Buffer& outPixels);
 
 private:
-    Device device_;
     Kernel kernel_;
 };
 

@@ -15,11 +15,10 @@ public:
         const Surface* addend;  ///< may be null: nothing is added
         const Surface& outRadiance;
     };
-    explicit ModulateStage(const Device& device) : device_(device), kernel_(device, "modulate") {}
+    explicit ModulateStage(const Device& device) : kernel_(device, "modulate") {}
     void enqueue(const Images& images);
 
 private:
-    Device device_;
     Kernel kernel_;
 };
 

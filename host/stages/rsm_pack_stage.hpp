@@ -9,11 +9,10 @@ namespace earthshine {
 /// Fills RsmView::records from its surfaces. Thread-compatible; owns its program, no images.
 class RsmPackStage {
 public:
-    explicit RsmPackStage(const Device& device) : device_(device), kernel_(device, "rsm_pack") {}
+    explicit RsmPackStage(const Device& device) : kernel_(device, "rsm_pack") {}
     void enqueue(const RsmView& rsm, const cl::Buffer& lights);
 
 private:
-    Device device_;
     Kernel kernel_;
 };
 

@@ -8,7 +8,7 @@ namespace earthshine {
 /// Square maps of all lights below one another: as the lights' cameras drew them, and packed.
 struct RsmView {
     Surface depth, normalWs, flux;
-    cl::Buffer records;  ///< RsmRecord, rows of sizePx; empty if the device gathers from the surfaces
+    cl::Buffer records;  ///< RsmRecord, rows of sizePx; null if the device gathers from the surfaces
     int sizePx = 0;
     int lightCount = 0;
 };

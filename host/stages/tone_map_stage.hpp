@@ -14,11 +14,10 @@ public:
         const cl::Buffer& exposure;    ///< one float (ExposureStage)
         const cl::Buffer& outDisplay;  ///< uchar4 a pixel
     };
-    explicit ToneMapStage(const Device& device) : device_(device), kernel_(device, "tone_map") {}
+    explicit ToneMapStage(const Device& device) : kernel_(device, "tone_map") {}
     void enqueue(const Images& images, const ToneMapParams& params);
 
 private:
-    Device device_;
     Kernel kernel_;
 };
 

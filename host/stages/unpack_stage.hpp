@@ -10,12 +10,11 @@ namespace earthshine {
 /// images.
 class UnpackStage {
 public:
-    explicit UnpackStage(const Device& device) : device_(device), kernel_(device, "unpack") {}
+    explicit UnpackStage(const Device& device) : kernel_(device, "unpack") {}
     void enqueue(const cl::Buffer& pixels, PixelFormat format, Extent extent, const Surface& outSurface,
                  int firstRowPx);
 
 private:
-    Device device_;
     Kernel kernel_;
 };
 

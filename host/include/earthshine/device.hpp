@@ -37,8 +37,8 @@ struct DeviceCaps {
     std::size_t maxImageSizePx[2] = {0, 0};
     bool unifiedMemory = false;
     bool fusesMultiplyAdd = false;  ///< fma() is one instruction
-    std::string unusable;  ///< why this device cannot run Earthshine; empty if it can
-    Tuning tuning;         ///< the defaults chosen for it
+    std::string unusable;           ///< why this device cannot run Earthshine; empty if it can
+    Tuning tuning;                  ///< the defaults chosen for it
 };
 
 /// Every device of every platform that the ICD loader finds; empty without any. Never throws for a broken driver: such
@@ -57,14 +57,15 @@ struct DeviceOptions {
     std::string storage;  ///< "image", "planar", "" = the tuning table's
     int rsmRecords = -1;  ///< 0, 1, -1 = the tuning table's
     int localSizePx[2] = {0, 0};
-    bool profiling = true;  ///< stage times by profiling events; off for the last bit of speed on some drivers
+    bool profiling = false;  ///< stage times by profiling events; slows some drivers down (Intel's by up to 1.8x)
     std::string
         kernelFolder;         ///< read kernel sources from here, not from the library; "" = $EARTHSHINE_KERNELS or none
     std::string cacheFolder;  ///< "" = $EARTHSHINE_CACHE, else $XDG_CACHE_HOME/earthshine, else ~/.cache/earthshine;
                               ///< "none" = off
 };
 
-/// An open device: context, queue and program cache. Shared by copies; the last one closes it. Close before GL.
+/// An open device: context, one queue, program cache. Shared by copies, which all belong to one thread at a time; the
+/// last one closes it. Close before GL.
 class Device {
 public:
     /// Throws DeviceError if the device cannot be opened, UsageError for options that it does not have.

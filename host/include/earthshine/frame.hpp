@@ -54,7 +54,7 @@ struct GBuffer {
 struct LightMaps {
     ImageView rsmDepth;     ///< R32F    - m along the light's -z, > 0; 0 where the light meets nothing
     ImageView rsmNormalWs;  ///< RGBA16F - unit, world space; w = 1, or 0 where the light meets nothing
-    ImageView rsmFlux;      ///< RGBA32F - lm: albedo x power sent through the texel (see texelPower); alpha unused
+    ImageView rsmFlux;      ///< RGBA32F - lm: albedo x power sent through the texel (texelPowerOnAxis); alpha unused
     ImageView shadowDepth;  ///< R32F    - as rsmDepth, of any square or oblong extent of its own
 };
 
@@ -66,9 +66,16 @@ struct FrameInputs {
     std::vector<LightMaps> lightMaps;
 };
 
+/// What is wrong with a camera or light, one line, or "" if it is as this file says: finite numbers, a rigid view, a
+/// projection that is plainly perspective (w = -c z) or orthographic (w = c), off-centre or not, without skew; a
+/// light's own projection, cone and intensity. Lengths of axes may be off by 1e-3, as of floats written with four
+/// digits.
+std::string faultOf(const Camera& camera);
+std::string faultOf(const Light& light);
+
 /// Power (lm a unit of `intensity`) that the light sends through each texel of a map of `extent` at the map's centre:
 /// directional: the texel's area across the beam, m^2; spot: its solid angle on the axis, sr, so that a texel at the
-/// angle theta from the axis gets cos^3(theta) of it, times spotAttenuation. DESIGN: dPhi_p = E_perp A or I dOmega.
+/// angle theta from the axis gets cos^3(theta) of it, times spotAttenuation and rangeAttenuation.
 float texelPowerOnAxis(const Light& light, Extent extent);
 
 /// The cone's falloff of KHR_lights_punctual at the angle whose cosine is given, [0; 1].

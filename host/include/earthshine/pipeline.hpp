@@ -28,11 +28,11 @@ inline constexpr const char* kOutputNames[] = {
 
 struct StageTime {
     std::string stage;  ///< the kernel's name
-    double ms = 0;      ///< on the device, by profiling events; 0 if profiling is off
+    double ms = 0;      ///< on the device, by profiling events; 0 unless DeviceOptions::profiling
 };
 
 /// Runs frames on one device. Construction builds every kernel (slow, cached); surfaces are allocated by the first
-/// frame and whenever an extent changes. Thread-compatible.
+/// frame and whenever an extent changes. Thread-compatible; pipelines on one Device share its queue, and so its thread.
 class Pipeline {
 public:
     explicit Pipeline(const Device& device);
@@ -40,9 +40,9 @@ public:
     Pipeline(Pipeline&&) noexcept;
     Pipeline& operator=(Pipeline&&) noexcept;
 
-    /// Hands over a frame. The images are read until run() returns; those whose memory is aligned to 4096 bytes (as
-    /// HostImage's is) are used in place where the device shares the host's memory.
-    /// Throws InputError if the formats or extents are not those of frame.hpp, naming the image.
+    /// Hands over a frame. Every run() reads its images, until the next setFrame(); those whose memory is aligned to
+    /// 4096 bytes (as HostImage's is) are used in place where the device shares the host's memory. Throws InputError
+    /// naming the image, camera or light that is not as frame.hpp says.
     void setFrame(const FrameInputs& frame);
 
     /// Computes the outputs of the frame that was set, and waits. `progress`, if given, hears fractions in [0; 1].
@@ -79,7 +79,8 @@ struct FrameImages {
 };
 
 /// Transport `host`: reads every texture of `frame` back into memory that OpenCL uses in place. The GL context that
-/// owns the textures must be current. Throws DeviceError on a GL error.
+/// owns the textures must be current; its state is left as it was. Throws DeviceError on a GL error, or if a texture is
+/// not of the extent that `frame` says.
 FrameImages readBack(const GlFrame& frame, const Camera& camera, const std::vector<Light>& lights,
                      const GlGetProcAddress& getProcAddress);
 

@@ -1,13 +1,13 @@
 #pragma once
 // Every setting of the OpenCL half: one home, one default, one line of help. The command line, the report and the
-// range check all walk forEachSetting(), so a setting has the same name everywhere.
+// range check all walk forEachSetting(), so that an option and a key of the report have one name.
 
-#include <limits>
 #include <span>
 
 namespace earthshine {
 
-/// How the sum over RSM texels is estimated. Both have the same mean: E = sum_p Phi_p / pi * G(p, x).
+/// How the sum over RSM texels, E = sum_p Phi_p / pi * G(p, x), is estimated. The disk's mean is that sum if the disk
+/// covers the map (radius sqrt(2)); a smaller one leaves out what lies beyond it.
 enum class Estimator {
     Disk,  ///< a few texels in a disk around the point's own projection (Dachsbacher & Stamminger 2005)
     Sum,   ///< every texel: slow, exact
@@ -23,8 +23,9 @@ inline constexpr const char* kToneCurveNames[] = {"filmic", "srgb"};
 
 struct Settings {
     Estimator estimator = Estimator::Disk;  ///< how indirect light is gathered
-    int sampleCount = 64;                   ///< [1; 4096] - disk: RSM texels a pixel
-    float radiusUv = 0.5f;                  ///< (0; 2] (fraction of the RSM's side) - disk: radius; sqrt(2) covers all
+    int sampleCount = 256;                  ///< [1; 4096] - disk: RSM texels a pixel
+    float radiusUv = 1.4143f;               ///< (0; 2] (fraction of the RSM's side) - disk: radius; sqrt(2) covers the
+                                            ///< map from anywhere, less gives up energy for less noise
     float shadowBiasTexels = 0.5f;          ///< [0; 16] (shadow map texels) - depth bias, constant part
     float shadowSlopeBiasTexels = 1.5f;     ///< [0; 16] (shadow map texels) - depth bias a unit of slope
     ToneCurve toneCurve = ToneCurve::Filmic;
@@ -48,7 +49,8 @@ void forEachSetting(SettingsT& s, Visitor&& visit) {
                       kEstimatorNames},
           s.estimator);
     visit(SettingInfo{"spp", "samples a pixel", 1, 4096, "disk: RSM texels that each pixel reads"}, s.sampleCount);
-    visit(SettingInfo{"radius", "of the RSM's side", 1e-4, 2, "disk: radius around the pixel's own projection"},
+    visit(SettingInfo{"radius", "of the RSM's side", 1e-4, 2,
+                      "disk: radius around the pixel's own projection; below 1.4143 far texels are left out"},
           s.radiusUv);
     visit(SettingInfo{"shadow-bias", "shadow map texels", 0, 16, "constant depth bias of the shadow test"},
           s.shadowBiasTexels);

@@ -31,7 +31,8 @@ std::string describe(const DeviceCaps& caps, bool chosen) {
         line("unusable", caps.unusable);
         return text;
     }
-    line("type", fmt::format("{}, {} units, {} floats wide", caps.type, caps.computeUnits, caps.nativeFloatWidth));
+    line("type", fmt::format("{}, {} units, {} floats wide, {}", caps.type, caps.computeUnits, caps.nativeFloatWidth,
+                             caps.fusesMultiplyAdd ? "fused multiply-add" : "no fused multiply-add"));
     line("memory", fmt::format("{} MiB global{}, {} KiB local, {} work-items a group", caps.globalMemoryBytes >> 20,
                                caps.unifiedMemory ? " shared with the host" : "", caps.localMemoryBytes >> 10,
                                caps.maxWorkGroupSize));

@@ -49,6 +49,7 @@ Json capsJson(const DeviceCaps& caps) {
             {"maxAllocationBytes", caps.maxAllocationBytes},
             {"maxWorkGroupSize", caps.maxWorkGroupSize},
             {"unifiedMemory", caps.unifiedMemory},
+            {"fusesMultiplyAdd", caps.fusesMultiplyAdd},
             {"images", caps.images},
             {"maxImageSize", {caps.maxImageSizePx[0], caps.maxImageSizePx[1]}},
             {"imageFormats", caps.imageFormats},

@@ -9,6 +9,7 @@
 #include "interop/host_transport.hpp"
 #include "pipeline/make_params.hpp"
 #include "room_frame.hpp"
+#include "stages/blue_noise.hpp"
 #include "stages/frame_params.hpp"
 #include "stages/rsm_gather_stage.hpp"
 #include "stages/rsm_pack_stage.hpp"
@@ -33,6 +34,9 @@ void gather(benchmark::State& state, Extent extent, int sampleCount, const Varia
     const std::vector<f32x4> points = makeDiskPattern(sampleCount);
     const cl::Buffer pattern = impl.makeBuffer(points.size() * sizeof(f32x4));
     impl.queue.enqueueWriteBuffer(pattern, CL_TRUE, 0, points.size() * sizeof(f32x4), points.data());
+    const std::vector<float> planes = makeRotationNoise();
+    const cl::Buffer noise = impl.makeBuffer(planes.size() * sizeof(float));
+    impl.queue.enqueueWriteBuffer(noise, CL_TRUE, 0, planes.size() * sizeof(float), planes.data());
     Settings settings;
     settings.sampleCount = sampleCount;
     settings.radiusUv = 0.3f;  // a disk that stays on the map: every sample costs its full price
@@ -40,8 +44,8 @@ void gather(benchmark::State& state, Extent extent, int sampleCount, const Varia
         makeParams(settings, {makeViewRays(frame.camera, extent), kRsmSizePx, 1, inputs.shadowExtent});
 
     RsmGatherStage stage(device);
-    const RsmGatherStage::Images surfaces{inputs.normalWs, inputs.depth, inputs.rsm,
-                                          inputs.lights,   pattern,      irradiance};
+    const RsmGatherStage::Images surfaces{inputs.normalWs, inputs.depth, inputs.rsm, inputs.lights,
+                                          pattern,         noise,        irradiance};
     const auto launchAll = [&] {
         impl.launches.clear();
         if (device.tuning().rsmRecords) packStage.enqueue(inputs.rsm, inputs.lights);

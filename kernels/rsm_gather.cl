@@ -3,12 +3,14 @@
 //   G = max(0, n_p.(x - x_p)) max(0, n.(x_p - x)) / |x - x_p|^4, with the texel a small disc (rsm.clh)
 //   Dachsbacher & Stamminger 2005, whose weights leave the pdf out. Ours: s lies in the disk of the given radius by the
 //   pattern's pdf, so the mean is that of the full sum for any sample count and any radius that covers the map; beyond
-//   the map's border is black, at no bias, since texels there have no flux.
+//   the map's border is black, at no bias, since texels there have no flux. Each pixel shifts the pattern's radii and turns
+//   it by blue noise (Cranley & Patterson 1976), so that what few samples miss becomes fine noise instead of bands.
 //   in   inNormalWs     unit
 //   in   inDepth        m; 0 on sky
 //   in   rsm            all lights' maps below one another
 //   in   lights         LightParams
-//   in   pattern        sampleCount x (dx, dy, 1 / (S pdf), -) in the unit disk
+//   in   pattern        sampleCount x (cos a, sin a, 1 / (S pdf), r^2) in the unit disk
+//   in   noise          three planes of 64 x 64: shift of r^2 [0; 1), cosine and sine of a turn; repeats
 //   out  outIrradiance  lx, >= 0, finite; 0 on sky
 //   Work 2D, one item per LANES pixels of a row, any local size; items past the edge return.
 
@@ -17,7 +19,7 @@
 
 __kernel void rsm_gather(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm),
                          __global const LightParams* restrict lights, __global const float4* restrict pattern,
-                         SURFACE_OUT(outIrradiance), const RsmGatherParams params) {
+                         __global const float* restrict noise, SURFACE_OUT(outIrradiance), const RsmGatherParams params) {
     Pixel px = itemPixel();
     if (isOutside(px, outIrradianceLayout)) return;
     vfloat3 irradiance = make3(0.0f, 0.0f, 0.0f);
@@ -30,6 +32,15 @@ __kernel void rsm_gather(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm
     vfloat3 normalWs = load3(inNormalWs, px);
     vfloat3 positionWs = positionFromDepth(&params.cameraRays, px.x + laneIndex(), (vint)(px.y), depth);
     float size = (float)params.rsmSizePx;
+
+    vfloat shift = 0.0f, cosTurn = 1.0f, sinTurn = 0.0f;
+    if (params.rotates) {
+        __global const float* from = noise + (px.y % ROTATION_NOISE_SIZE_PX) * ROTATION_NOISE_SIZE_PX +
+                                     px.x % ROTATION_NOISE_SIZE_PX;
+        shift = *(__global const vfloat*)from;
+        cosTurn = *(__global const vfloat*)(from + ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX);
+        sinTurn = *(__global const vfloat*)(from + 2 * ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX);
+    }
 
     for (int l = 0; l < params.lightCount; ++l) {
         const LightParams light = lights[l];
@@ -45,8 +56,10 @@ __kernel void rsm_gather(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm
         vfloat3 sum = make3(0.0f, 0.0f, 0.0f);
         for (int s = 0; s < params.sampleCount; ++s) {
             float4 p = pattern[s];
-            vfloat fx = vmad(p.x, params.radiusUv * size, cx);
-            vfloat fy = vmad(p.y, params.radiusUv * size, cy);
+            vfloat r2 = p.w + shift;
+            vfloat r = params.radiusUv * size * sqrt(vselect(r2 >= 1.0f, r2 - 1.0f, r2));
+            vfloat fx = vmad(r, p.x * cosTurn - p.y * sinTurn, cx);
+            vfloat fy = vmad(r, p.x * sinTurn + p.y * cosTurn, cy);
             vmask isInside = (fx >= 0.0f) & (fx < size) & (fy >= 0.0f) & (fy < size);
             vint x = vselectInt(isInside, toVint(fx), 0);
             vint y = vselectInt(isInside, toVint(fy), 0) + l * params.rsmSizePx;

@@ -11,6 +11,7 @@ FrameParams makeParams(const Settings& settings, const FrameGeometry& frame) {
     p.gather.lightCount = frame.lightCount;
     p.gather.sampleCount = settings.sampleCount;
     p.gather.radiusUv = settings.radiusUv;
+    p.gather.rotates = settings.rotates ? 1 : 0;
     p.sum.cameraRays = frame.cameraRays;
     p.sum.rsmSizePx = frame.rsmSizePx;
     p.sum.lightCount = frame.lightCount;

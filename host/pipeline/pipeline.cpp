@@ -8,6 +8,7 @@
 #include "earthshine/error.hpp"
 #include "interop/host_transport.hpp"
 #include "pipeline/make_params.hpp"
+#include "stages/blue_noise.hpp"
 #include "stages/direct_light_stage.hpp"
 #include "stages/exposure_stage.hpp"
 #include "stages/frame_params.hpp"
@@ -33,6 +34,7 @@ struct Pipeline::Impl {
           toneMap(d),
           interleave(d),
           exposure(d.impl().makeBuffer(sizeof(float))) {
+        uploadNoise();
         checkFormats();
     }
 
@@ -52,7 +54,7 @@ struct Pipeline::Impl {
     Extent extent;
     Surface directIrradiance, indirectIrradiance, direct, color;
     Surface scratch;  ///< allocated by the first read that needs it
-    cl::Buffer exposure, display, pixels, pattern;
+    cl::Buffer exposure, display, pixels, pattern, noise;
     int patternSize = 0;
     FrameParams params;
     bool hasFrame = false, hasRun = false;
@@ -103,15 +105,22 @@ struct Pipeline::Impl {
         return scratch;
     }
 
+    void uploadNoise() {
+        const std::vector<float> planes = makeRotationNoise();
+        noise = device.impl().makeBuffer(planes.size() * sizeof(float));
+        write(noise, planes.data(), planes.size() * sizeof(float));
+    }
+
+    void write(const cl::Buffer& buffer, const void* data, std::size_t bytes) {
+        Device::Impl& impl = device.impl();
+        impl.checked("writing a table", [&] { return impl.queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, data); });
+    }
+
     void uploadPattern(int count) {
         if (patternSize == count) return;
         const std::vector<f32x4> points = makeDiskPattern(count);
-        Device::Impl& impl = device.impl();
-        pattern = impl.makeBuffer(points.size() * sizeof(f32x4));
-        impl.checked("writing the sample pattern", [&] {
-            impl.queue.enqueueWriteBuffer(pattern, CL_TRUE, 0, points.size() * sizeof(f32x4), points.data());
-            return 0;
-        });
+        pattern = device.impl().makeBuffer(points.size() * sizeof(f32x4));
+        write(pattern, points.data(), points.size() * sizeof(f32x4));
         patternSize = count;
     }
 
@@ -231,9 +240,9 @@ void Pipeline::run(const Settings& settings, const std::function<void(double)>& 
         p.sumInBands(progress);
     } else {
         p.uploadPattern(p.params.gather.sampleCount);
-        p.rsmGather.enqueue(
-            {p.inputs.normalWs, p.inputs.depth, p.inputs.rsm, p.inputs.lights, p.pattern, p.indirectIrradiance},
-            p.params.gather);
+        p.rsmGather.enqueue({p.inputs.normalWs, p.inputs.depth, p.inputs.rsm, p.inputs.lights, p.pattern, p.noise,
+                             p.indirectIrradiance},
+                            p.params.gather);
     }
     p.modulate.enqueue(
         {p.inputs.albedo, p.directIrradiance, p.inputs.emission.empty() ? nullptr : &p.inputs.emission, p.direct});

@@ -86,10 +86,9 @@ std::vector<f32x4> makeDiskPattern(int count) {
         double inverse = 0.0;
         for (unsigned bits = unsigned(i), place = 1; bits != 0; bits >>= 1, ++place)
             if (bits & 1u) inverse += std::ldexp(1.0, -int(place));
-        const double radius = std::sqrt((i + 0.5) / count);
         const double angle = 2.0 * std::numbers::pi * inverse;
-        pattern[std::size_t(i)] = {float(radius * std::cos(angle)), float(radius * std::sin(angle)),
-                                   float(std::numbers::pi / count), 0.0f};
+        pattern[std::size_t(i)] = {float(std::cos(angle)), float(std::sin(angle)), float(std::numbers::pi / count),
+                                   float((i + 0.5) / count)};
     }
     return pattern;
 }

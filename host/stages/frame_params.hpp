@@ -15,7 +15,8 @@ ViewRays makeViewRays(const Camera& camera, Extent extent);
 /// One light for RSMs and shadow maps of the given extents.
 LightParams makeLightParams(const Light& light, Extent rsmExtent, Extent shadowExtent);
 
-/// `count` Hammersley points in the unit disk, uniform by area: (dx, dy, 1 / (count pdf), 0) with pdf = 1 / pi.
+/// `count` Hammersley points in the unit disk, uniform by area: (cos a, sin a, 1 / (count pdf), r^2) with
+/// pdf = 1 / pi.
 std::vector<f32x4> makeDiskPattern(int count);
 
 }  // namespace earthshine

@@ -8,7 +8,10 @@ void RsmGatherStage::enqueue(const Images& images, const RsmGatherParams& params
     requireExtent("rsm_gather", "inDepth", images.depth, extent);
     kernel_.set("inNormalWs", images.normalWs).set("inDepth", images.depth);
     setRsm(kernel_, device_, images.rsm);
-    kernel_.set("lights", images.lights).set("pattern", images.pattern).set("outIrradiance", images.outIrradiance);
+    kernel_.set("lights", images.lights)
+        .set("pattern", images.pattern)
+        .set("noise", images.noise)
+        .set("outIrradiance", images.outIrradiance);
     kernel_.setParams("params", params);
     kernel_.enqueue(images.outIrradiance.extent());
 }

@@ -16,6 +16,7 @@ public:
         const RsmView& rsm;
         const cl::Buffer& lights;   ///< LightParams, one a map
         const cl::Buffer& pattern;  ///< f32x4, sampleCount of them (makeDiskPattern)
+        const cl::Buffer& noise;    ///< makeRotationNoise
         const Surface& outIrradiance;
     };
     explicit RsmGatherStage(const Device& device) : device_(device), kernel_(device, "rsm_gather") {}

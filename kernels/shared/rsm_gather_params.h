@@ -15,8 +15,12 @@ typedef struct RsmGatherParams {
     i32 lightCount;   // >= 0
     i32 sampleCount;  // a light, [1; 4096]
     f32 radiusUv;     // (0; 2], fraction of the map's side
+    i32 rotates;      // 0 or 1: each pixel turns and shifts the pattern by its noise
+    i32 padding0, padding1, padding2;
 } RsmGatherParams;
-ES_ASSERT_SIZE(RsmGatherParams, 112);
+ES_ASSERT_SIZE(RsmGatherParams, 128);
+
+#define ROTATION_NOISE_SIZE_PX 64
 
 #ifndef ES_DIALECT_CL
 }  // namespace earthshine

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <numbers>
+#include <string>
 
 #include <glm/geometric.hpp>
 
@@ -109,8 +112,23 @@ glm::dvec3 rsmSum(const SurfacePoint& x, const std::vector<Vpl>& texels) {
     return sum / std::numbers::pi;
 }
 
+PatternMove patternMove(int x, int y) {
+    constexpr std::size_t kSize = 64;
+    static const std::string file = [] {
+        std::ifstream in(EARTHSHINE_DATA_DIR "/noise/blue_noise.pgm", std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(in), {});
+    }();
+    const auto fraction = [&](std::size_t tile) {  // 16 bits, the high byte first, at the end of the file
+        const std::size_t texel = (tile * kSize + std::size_t(y) % kSize) * kSize + std::size_t(x) % kSize;
+        const auto* bytes =
+            reinterpret_cast<const unsigned char*>(file.data()) + file.size() - 4 * kSize * kSize + 2 * texel;
+        return (256 * bytes[0] + bytes[1] + 0.5) / (kSize * kSize);
+    };
+    return {fraction(0), fraction(1)};
+}
+
 glm::dvec3 rsmDisk(const SurfacePoint& x, const std::vector<Vpl>& texels, const Light& light, int size, int count,
-                   double radiusUv) {
+                   double radiusUv, PatternMove move) {
     glm::dvec3 sum(0.0);
     if (!x.isValid) return sum;
     glm::dvec2 centre(0.5);
@@ -120,7 +138,8 @@ glm::dvec3 rsmDisk(const SurfacePoint& x, const std::vector<Vpl>& texels, const 
     for (int i = 0; i < count; ++i) {
         double mirrored = 0.0, place = 0.5;
         for (int bits = i; bits != 0; bits /= 2, place /= 2) mirrored += place * (bits % 2);
-        const double r = radiusUv * std::sqrt((i + 0.5) / count), angle = 2.0 * std::numbers::pi * mirrored;
+        const double r = radiusUv * std::sqrt(std::fmod((i + 0.5) / count + move.shift, 1.0));
+        const double angle = 2.0 * std::numbers::pi * (mirrored + move.turn);
         const int px = int(std::floor((centre.x + r * std::cos(angle)) * size));
         const int py = int(std::floor((centre.y + r * std::sin(angle)) * size));
         if (px < 0 || py < 0 || px >= size || py >= size) continue;  // black beyond the border

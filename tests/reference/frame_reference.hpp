@@ -41,9 +41,18 @@ double texelGeometry(const SurfacePoint& x, const Vpl& p);
 /// sum_p Phi_p / pi G(p, x).
 glm::dvec3 rsmSum(const SurfacePoint& x, const std::vector<Vpl>& texels);
 
+/// How a pixel moves the disk's pattern: r^2 by `shift` (of the unit disk, wrapping), the whole by `turn` of a circle.
+struct PatternMove {
+    double shift = 0.0;
+    double turn = 0.0;
+};
+
+/// The move of pixel (x, y) by the two tiles of data/noise/blue_noise.pgm.
+PatternMove patternMove(int x, int y);
+
 /// The disk estimator with `count` Hammersley points around the projection of x, for an RSM of side `size`.
 glm::dvec3 rsmDisk(const SurfacePoint& x, const std::vector<Vpl>& texels, const Light& light, int size, int count,
-                   double radiusUv);
+                   double radiusUv, PatternMove move);
 
 /// Direct irradiance of one light behind its shadow map.
 glm::dvec3 directLight(const SurfacePoint& x, const Light& light, const ImageView& shadowDepth, double biasTexels,

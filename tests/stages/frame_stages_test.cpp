@@ -48,6 +48,7 @@ Expected expectedOf(const FrameImages& images, const Settings& settings) {
     e.direct.resize(e.points.size());
     e.sum.resize(e.points.size());
     e.disk.resize(e.points.size());
+    const int width = frame.gbuffer.depth.extent.widthPx;
     for (std::size_t l = 0; l < frame.lights.size(); ++l) {
         const std::vector<Vpl> texels = reference::vpls(frame.lights[l], frame.lightMaps[l]);
         const int size = frame.lightMaps[l].rsmDepth.extent.widthPx;
@@ -56,8 +57,9 @@ Expected expectedOf(const FrameImages& images, const Settings& settings) {
                 reference::directLight(e.points[i], frame.lights[l], frame.lightMaps[l].shadowDepth,
                                        double(settings.shadowBiasTexels), double(settings.shadowSlopeBiasTexels));
             e.sum[i] += reference::rsmSum(e.points[i], texels);
-            e.disk[i] += reference::rsmDisk(e.points[i], texels, frame.lights[l], size, settings.sampleCount,
-                                            double(settings.radiusUv));
+            e.disk[i] += reference::rsmDisk(
+                e.points[i], texels, frame.lights[l], size, settings.sampleCount, double(settings.radiusUv),
+                settings.rotates ? reference::patternMove(int(i) % width, int(i) / width) : reference::PatternMove());
         }
     }
     return e;
@@ -74,6 +76,7 @@ TEST_P(FrameStages, AgreeWithTheReference) {
         Settings settings;
         settings.sampleCount = 13;
         settings.radiusUv = 0.4f;
+        settings.rotates = extent.widthPx != 7;
         const Expected expected = expectedOf(images, settings);
         pipeline.setFrame(images.inputs());
 

@@ -26,6 +26,7 @@ struct Settings {
     int sampleCount = 256;                  ///< [1; 4096] - disk: RSM texels a pixel
     float radiusUv = 1.4143f;               ///< (0; 2] (fraction of the RSM's side) - disk: radius; sqrt(2) covers the
                                             ///< map from anywhere, less gives up energy for less noise
+    bool rotates = true;                    ///< disk: blue noise turns the pattern at each pixel; off: bands, no noise
     float shadowBiasTexels = 0.5f;          ///< [0; 16] (shadow map texels) - depth bias, constant part
     float shadowSlopeBiasTexels = 1.5f;     ///< [0; 16] (shadow map texels) - depth bias a unit of slope
     ToneCurve toneCurve = ToneCurve::Filmic;
@@ -52,6 +53,9 @@ void forEachSetting(SettingsT& s, Visitor&& visit) {
     visit(SettingInfo{"radius", "of the RSM's side", 1e-4, 2,
                       "disk: radius around the pixel's own projection; below 1.4143 far texels are left out"},
           s.radiusUv);
+    visit(SettingInfo{"rotate", "", 0, 1,
+                      "disk: blue noise turns the pattern at each pixel; off: bands instead of noise"},
+          s.rotates);
     visit(SettingInfo{"shadow-bias", "shadow map texels", 0, 16, "constant depth bias of the shadow test"},
           s.shadowBiasTexels);
     visit(SettingInfo{"shadow-slope-bias", "shadow map texels", 0, 16, "depth bias for each unit of slope"},

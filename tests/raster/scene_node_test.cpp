@@ -18,7 +18,8 @@ using testing::IsEmpty;
 
 constexpr double kHalfTurn[] = {0, 1, 0, 0};                                       // about y
 constexpr double kQuarterTurn[] = {0, 0.7071067811865476, 0, 0.7071067811865476};  // about y: +z to +x
-constexpr float kRounding = 1e-6f;                                                 // of a few products near 1
+constexpr double kEighthTurn[] = {0, 0.3826834323650898, 0, 0.9238795325112867};
+constexpr float kRounding = 1e-6f;  // of a few products near 1
 
 glm::vec3 at(const glm::mat4& matrix, const glm::vec3& point) {
     return glm::vec3(matrix * glm::vec4(point, 1.0f));
@@ -158,7 +159,7 @@ TEST(SceneCameras, OrthographicAndRigidUnderScale) {
     GltfBuilder builder;
     builder.add("cameras",
                 {{"type", "orthographic"}, {"orthographic", {{"xmag", 4}, {"ymag", 2}, {"znear", 0}, {"zfar", 9}}}});
-    builder.add("nodes", {{"camera", 0}, {"rotation", kQuarterTurn}});
+    builder.add("nodes", {{"camera", 0}, {"rotation", kEighthTurn}});
     builder.add("nodes", {{"scale", {-2, 3, 4}}, {"translation", {1, 2, 3}}, {"children", {0}}});
     const Scene scene = builder.load();
     const SceneCamera& camera = scene.cameras.at(0);
@@ -168,8 +169,9 @@ TEST(SceneCameras, OrthographicAndRigidUnderScale) {
     EXPECT_EQ(camera.nearM, 0.0f);
     EXPECT_EQ(camera.farM, 9.0f);
     expectRigid(camera.worldFromView);
-    // The parent mirrors x: -z, turned to -x by the node, looks along +x.
-    expectNear(-glm::vec3(camera.worldFromView[2]), {1, 0, 0});
+    // -z, turned to (-1, 0, -1) by the node, is mirrored and sheared to (2, 0, -4); up stays up.
+    expectNear(-glm::vec3(camera.worldFromView[2]), glm::normalize(glm::vec3(2, 0, -4)));
+    expectNear(glm::vec3(camera.worldFromView[1]), {0, 1, 0});
     expectNear(glm::vec3(camera.worldFromView[3]), {1, 2, 3});
 }
 

@@ -1,7 +1,6 @@
 // Tangents: on quads with known uv the tangent frame is known.
 
 #include <cmath>
-#include <numbers>
 
 #include <gmock/gmock.h>
 #include <glm/geometric.hpp>
@@ -108,7 +107,7 @@ TEST(SceneTangents, SplitWhereHandednessChanges) {
     }
 }
 
-TEST(SceneTangents, AreSmoothedByAngleOverSharedCorners) {
+TEST(SceneTangents, AreProjectedToThePlaneOfTheNormal) {
     // A ridge along z with one shared normal (0, 1, 0); the left slope's u runs up, the right slope's u runs down.
     // Projected to the plane of the normal both run along +x: so does their mean.
     GltfBuilder builder = mappedQuad([](glm::vec2 p) { return p; });
@@ -123,6 +122,44 @@ TEST(SceneTangents, AreSmoothedByAngleOverSharedCorners) {
     const Scene scene = builder.load();
     EXPECT_EQ(scene.meshes.at(0).vertices.size(), 6u);
     expectTangents(scene, {1, 0, 0}, 1.0f);
+}
+
+TEST(SceneTangents, AreWeightedByTheAngleOfTheCorner) {
+    // Two triangles in z = 0 whose coordinates agree on their common edge and differ in direction: u runs along (1, 0)
+    // in the first and along (1, 1) in the second. Angles at (0, 0): 90 and 45 degrees; at (0, 1): 45 and 90.
+    const std::vector<float> xy = {0, 0, 1, 0, 0, 1, -1, 1};
+    const std::vector<float> uv = {0, 0, 1, 0, 0, -1, -1, -2};
+    const std::vector<std::size_t> corners = {0, 1, 2, 0, 2, 3};
+    const glm::vec2 diagonal(std::sqrt(0.5f));
+    const glm::vec2 expected[] = {glm::normalize(2.0f * glm::vec2(1, 0) + diagonal), glm::vec2(1, 0),
+                                  glm::normalize(glm::vec2(1, 0) + 2.0f * diagonal), diagonal};
+    for (const bool indexed : {true, false}) {  // equal corners share their tangent, whether they are one vertex or two
+        GltfBuilder builder = mappedQuad([](glm::vec2 p) { return p; });
+        std::vector<float> positions, normals, uvs;
+        for (const std::size_t i : indexed ? std::vector<std::size_t>{0, 1, 2, 3} : corners) {
+            positions.insert(positions.end(), {xy[2 * i], xy[2 * i + 1], 0});
+            normals.insert(normals.end(), {0, 0, 1});
+            uvs.insert(uvs.end(), {uv[2 * i], uv[2 * i + 1]});
+        }
+        Json& primitive = builder.document["meshes"][0]["primitives"][0];
+        primitive["attributes"] = {{"POSITION", builder.accessor(positions, "VEC3")},
+                                   {"NORMAL", builder.accessor(normals, "VEC3")},
+                                   {"TEXCOORD_0", builder.accessor(uvs, "VEC2")}};
+        if (indexed) {
+            primitive["indices"] = builder.accessor(std::vector<std::uint8_t>{0, 1, 2, 0, 2, 3}, "SCALAR");
+        } else {
+            primitive.erase("indices");
+        }
+        const Scene scene = builder.load();
+        const Mesh& mesh = scene.meshes.at(0);
+        ASSERT_EQ(mesh.indices.size(), corners.size());
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const glm::vec4& tangent = mesh.vertices[mesh.indices[i]].tangent;
+            EXPECT_NEAR(tangent.x, expected[corners[i]].x, kRounding);
+            EXPECT_NEAR(tangent.y, expected[corners[i]].y, kRounding);
+            EXPECT_EQ(tangent.w, 1.0f);
+        }
+    }
 }
 
 TEST(SceneTangents, OfTheFileAreKept) {

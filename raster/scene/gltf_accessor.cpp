@@ -25,23 +25,21 @@ T load(const unsigned char* bytes) {
     return value;
 }
 
-/// Calls `body` with a value of the C++ type that a component type stands for.
+/// Calls `body` with a value of the C++ type that a component type of indices stands for.
+template <typename Body>
+void withIndexType(int componentType, const Body& body) {
+    if (componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) return body(std::uint8_t());
+    if (componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) return body(std::uint16_t());
+    return body(std::uint32_t());
+}
+
+/// The same for attributes.
 template <typename Body>
 void withComponentType(int componentType, const Body& body) {
-    switch (componentType) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE:
-            return body(std::int8_t());
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-            return body(std::uint8_t());
-        case TINYGLTF_COMPONENT_TYPE_SHORT:
-            return body(std::int16_t());
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-            return body(std::uint16_t());
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-            return body(std::uint32_t());
-        default:
-            return body(float());
-    }
+    if (componentType == TINYGLTF_COMPONENT_TYPE_BYTE) return body(std::int8_t());
+    if (componentType == TINYGLTF_COMPONENT_TYPE_SHORT) return body(std::int16_t());
+    if (componentType == TINYGLTF_COMPONENT_TYPE_FLOAT) return body(float());
+    return withIndexType(componentType, body);
 }
 
 const unsigned char* viewBytes(const GltfContext& context, int view, std::size_t offset) {
@@ -70,7 +68,7 @@ void forEachElement(const GltfContext& context, int index, const std::string& pl
     const unsigned char* indices =
         viewBytes(context, sparse.indices.bufferView, std::size_t(sparse.indices.byteOffset));
     const unsigned char* values = viewBytes(context, sparse.values.bufferView, std::size_t(sparse.values.byteOffset));
-    withComponentType(sparse.indices.componentType, [&](auto zero) {
+    withIndexType(sparse.indices.componentType, [&](auto zero) {
         using Index = decltype(zero);
         std::size_t next = 0;
         for (std::size_t i = 0; i < std::size_t(sparse.count); ++i) {
@@ -138,7 +136,7 @@ std::vector<std::uint32_t> readIndices(const GltfContext& context, int accessor,
     const tinygltf::Accessor& of = context.model.accessors[std::size_t(accessor)];
     countElements(context, accessor, gltf_limits::kIndices, place);
     std::vector<std::uint32_t> values(of.count, 0);
-    withComponentType(of.componentType, [&](auto zero) {
+    withIndexType(of.componentType, [&](auto zero) {
         using T = decltype(zero);
         forEachElement(context, accessor, place, [&](std::size_t element, const unsigned char* bytes) {
             values[element] = std::uint32_t(load<T>(bytes));

@@ -143,7 +143,7 @@ fs::path GltfFile::resolve(const std::string& uri, std::string_view place) const
         fail(place, "is not a file beside the scene; download it and name it there");
     if (relative.empty() || relative.find('\0') != std::string::npos) fail(place, "is no file name");
     std::error_code error;
-    const fs::path real = fs::weakly_canonical(folder_ / relative, error);
+    fs::path real = fs::weakly_canonical(folder_ / relative, error);
     if (error) fail(place, error.message());
     const auto [end, ignored] = std::mismatch(folder_.begin(), folder_.end(), real.begin(), real.end());
     if (end != folder_.end()) fail(place, "is outside the scene's folder; move it there");

@@ -96,6 +96,7 @@ Scene load(GltfFile& file, const LoadOptions& options) {
     checkSchema(document, file);
     std::vector<Bytes> buffers = readBuffers(document, file);
     std::vector<std::size_t> bufferBytes;
+    bufferBytes.reserve(buffers.size());
     for (const Bytes& bytes : buffers) bufferBytes.push_back(bytes.size());
     checkReferences(document, bufferBytes, file);
 

@@ -14,7 +14,8 @@ void validate(const Settings& settings) {
         using Value = std::remove_cvref_t<decltype(value)>;
         if constexpr (std::is_same_v<Value, int> || std::is_same_v<Value, float>) {
             const auto number = double(value);
-            if (!(number >= info.min && number <= info.max))  // a NaN is in no range
+            // The ends as the setting's own type has them; a NaN is in no range.
+            if (!(number >= double(Value(info.min)) && number <= double(Value(info.max))))
                 throw UsageError(fmt::format("{}: {} is not in [{}; {}]{}{}", info.name, number, info.min, info.max,
                                              *info.unit ? " " : "", info.unit));
         }

@@ -52,6 +52,16 @@ std::vector<Variant> allVariants() {
     return variants;
 }
 
+std::vector<Variant> quickVariants() {
+    std::vector<Variant> variants;
+    for (const Variant& v : allVariants()) {
+        const bool isLlvmpipe = v.caps.name.find("llvmpipe") != std::string::npos;
+        if (!isLlvmpipe || v.options.lanes == 1 || (v.options.lanes == 16 && v.options.storage == "planar"))
+            variants.push_back(v);
+    }
+    return variants;
+}
+
 std::vector<Variant> defaultVariants() {
     std::vector<Variant> variants;
     for (const DeviceCaps& caps : testedDevices()) variants.push_back({caps, {}, testName(caps)});

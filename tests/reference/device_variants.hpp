@@ -24,6 +24,10 @@ inline void PrintTo(const Variant& variant, std::ostream* out) {
 /// Devices whose platform or name holds the text of $EARTHSHINE_TEST_DEVICES, or all usable ones without it.
 std::vector<Variant> allVariants();
 
+/// Those of allVariants() that are quick to build: llvmpipe takes up to ten seconds a process for kernels of several
+/// lanes, so that of these there is only one.
+std::vector<Variant> quickVariants();
+
 /// One variant a device: its own defaults.
 std::vector<Variant> defaultVariants();
 

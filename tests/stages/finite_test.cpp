@@ -1,0 +1,144 @@
+// Whatever an input image holds, outputs are finite, and one bad pixel spoils no other. Judged by bits: a compiler may
+// take x != x for false.
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdlib>
+#include <limits>
+
+#include "earthshine/pipeline.hpp"
+#include "reference/device_variants.hpp"
+#include "reference/synthetic_frame.hpp"
+
+namespace earthshine {
+namespace {
+
+// One more than 16 lanes in a row, so that every width has a tail.
+constexpr Extent kExtent{17, 3};
+
+reference::SyntheticOptions smallFrame() {
+    reference::SyntheticOptions options;
+    options.extent = kExtent;
+    options.rsmSizePx = 5;
+    options.shadowExtent = {6, 4};
+    options.lightCount = 2;
+    return options;
+}
+
+bool isFinite(float v) {
+    return (std::bit_cast<std::uint32_t>(v) & 0x7f800000u) != 0x7f800000u;
+}
+
+constexpr Output kRadiometric[] = {Output::DirectIrradiance, Output::IndirectIrradiance, Output::Direct,
+                                   Output::Indirect, Output::Color};
+
+// Runs the frame, expects finite outputs, and gives them all, one after another.
+std::vector<float> outputsOf(Pipeline& pipeline, const FrameImages& frame, Estimator estimator) {
+    Settings settings;
+    settings.estimator = estimator;
+    settings.sampleCount = 7;
+    pipeline.setFrame(frame.inputs());
+    pipeline.run(settings);
+    std::vector<float> all;
+    for (const Output output : kRadiometric) {
+        const HostImage image = pipeline.read(output);
+        const float* pixels = image.pixel(0, 0);
+        all.insert(all.end(), pixels, pixels + 4 * kExtent.widthPx * kExtent.heightPx);
+    }
+    for (const float v : all) EXPECT_TRUE(isFinite(v)) << v;
+    EXPECT_TRUE(isFinite(pipeline.exposure())) << pipeline.exposure();
+    EXPECT_GT(pipeline.exposure(), 0.0f);
+    pipeline.read(Output::Display);
+    return all;
+}
+
+struct Input {
+    const char* name;
+    HostImage FrameImages::*image;
+    bool isGBuffer;
+};
+constexpr Input kInputs[] = {{"albedo", &FrameImages::albedo, true},
+                             {"normal", &FrameImages::normalWs, true},
+                             {"depth", &FrameImages::depth, true},
+                             {"emission", &FrameImages::emission, true},
+                             {"motion", &FrameImages::motion, true},
+                             {"RSM depth", &FrameImages::rsmDepth, false},
+                             {"RSM normal", &FrameImages::rsmNormalWs, false},
+                             {"RSM flux", &FrameImages::rsmFlux, false},
+                             {"shadow depth", &FrameImages::shadowDepth, false}};
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kValues[] = {
+    std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity, -1.0f, 1e6f, std::numeric_limits<float>::max(),
+    std::numeric_limits<float>::denorm_min()};
+
+// Sets all channels of a pixel; halves hold what a half can of it.
+void put(HostImage& image, int x, int y, float value) {
+    if (image.format() != PixelFormat::RGBA16F) {
+        for (int c = 0; c < channelCount(image.format()); ++c) image.pixel(x, y)[c] = value;
+        return;
+    }
+    auto* halves = reinterpret_cast<std::uint16_t*>(image.data()) + 4 * (y * image.extent().widthPx + x);
+    for (int c = 0; c < 4; ++c) halves[c] = halfFromFloat(value);
+}
+
+class Finite : public testing::TestWithParam<reference::Variant> {
+protected:
+    Pipeline pipeline_{Device(GetParam().caps, GetParam().options)};
+};
+
+TEST_P(Finite, OutputsWhateverInputsHold) {
+    for (const Estimator estimator : {Estimator::Disk, Estimator::Sum}) {
+        const std::vector<float> sound = outputsOf(pipeline_, reference::makeSyntheticFrame(smallFrame()), estimator);
+        for (const Input& input : kInputs) {
+            for (const float value : kValues) {
+                SCOPED_TRACE(testing::Message() << input.name << " of " << value);
+                FrameImages frame = reference::makeSyntheticFrame(smallFrame());
+                put(frame.*input.image, 3, 1, value);
+                const std::vector<float> spoiled = outputsOf(pipeline_, frame, estimator);
+                if (!input.isGBuffer) continue;
+                for (std::size_t i = 0; i < sound.size(); ++i) {
+                    const std::size_t pixel = i / 4 % std::size_t(kExtent.widthPx * kExtent.heightPx);
+                    if (pixel == std::size_t(kExtent.widthPx + 3)) continue;
+                    ASSERT_EQ(std::bit_cast<std::uint32_t>(spoiled[i]), std::bit_cast<std::uint32_t>(sound[i]))
+                        << "pixel " << pixel;
+                }
+            }
+        }
+    }
+
+    // And whatever all pixels hold.
+    for (const float value : kValues) {
+        SCOPED_TRACE(value);
+        FrameImages frame = reference::makeSyntheticFrame(smallFrame());
+        for (const Input& input : kInputs) {
+            HostImage& image = frame.*input.image;
+            for (int y = 0; y < image.extent().heightPx; ++y)
+                for (int x = 0; x < image.extent().widthPx; ++x) put(image, x, y, value);
+        }
+        for (const Estimator estimator : {Estimator::Disk, Estimator::Sum}) outputsOf(pipeline_, frame, estimator);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Finite, testing::ValuesIn(reference::quickVariants()),
+                         [](const auto& variant) { return variant.param.name; });
+
+// The whole pipeline once, as small as can be: what Oclgrind runs, at every width and storage.
+class SmallFrame : public testing::TestWithParam<reference::Variant> {};
+
+TEST_P(SmallFrame, Runs) {
+    Pipeline pipeline{Device(GetParam().caps, GetParam().options)};
+    for (const Estimator estimator : {Estimator::Disk, Estimator::Sum})
+        outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), estimator);
+}
+
+std::vector<reference::Variant> smallFrameVariants() {
+    return std::getenv("EARTHSHINE_TEST_DEVICES") ? reference::allVariants() : reference::defaultVariants();
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SmallFrame, testing::ValuesIn(smallFrameVariants()),
+                         [](const auto& variant) { return variant.param.name; });
+
+}  // namespace
+}  // namespace earthshine

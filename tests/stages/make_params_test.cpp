@@ -1,0 +1,144 @@
+// Settings become parameters: every one of them moves something, and none out of range gets through.
+
+#include "pipeline/make_params.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "earthshine/error.hpp"
+#include "image/temp_folder.hpp"
+
+namespace earthshine {
+namespace {
+
+// All that kernels get to see, and which estimator runs. Padding inside the structs is a field like others, so it is
+// set.
+std::vector<unsigned char> bytesOf(const FrameParams& p) {
+    std::vector<unsigned char> bytes;
+    const auto append = [&](const auto& part) {
+        const auto* data = reinterpret_cast<const unsigned char*>(&part);
+        bytes.insert(bytes.end(), data, data + sizeof part);
+    };
+    append(p.estimator);
+    append(p.gather);
+    append(p.sum);
+    append(p.directLight);
+    append(p.exposure);
+    append(p.toneMap);
+    return bytes;
+}
+
+FrameGeometry geometry() {
+    FrameGeometry g;
+    g.cameraRays.origin = {1, 2, 3, 0};
+    g.cameraRays.rayDx = {0.5f, 0, 0, 0};
+    g.rsmSizePx = 64;
+    g.lightCount = 2;
+    g.shadowExtent = {128, 96};
+    return g;
+}
+
+// Another value of the setting's own range.
+template <class Value>
+void nudge(const SettingInfo& info, Value& value) {
+    if constexpr (std::is_same_v<Value, bool>) {
+        value = !value;
+    } else if constexpr (std::is_enum_v<Value>) {
+        value = Value((int(value) + 1) % int(info.names.size()));
+    } else {
+        value = double(value) == info.max ? Value(info.min) : Value(info.max);
+    }
+}
+
+TEST(MakeParams, EverySettingMovesSomething) {
+    const std::vector<unsigned char> before = bytesOf(makeParams(Settings(), geometry()));
+    Settings settings;
+    int count = 0;
+    forEachSetting(settings, [&](const SettingInfo& info, auto& value) {
+        const auto kept = value;
+        nudge(info, value);
+        EXPECT_NE(bytesOf(makeParams(settings, geometry())), before) << info.name << " is never read";
+        EXPECT_NO_THROW(validate(settings)) << info.name;
+        value = kept;
+        ++count;
+    });
+    EXPECT_EQ(bytesOf(makeParams(settings, geometry())), before);
+    // forEachSetting must visit all there is: a field that it forgets is found by the size of what it visits.
+    std::size_t visited = 0;
+    forEachSetting(settings, [&](const SettingInfo&, auto& value) { visited += sizeof value; });
+    EXPECT_LE(visited, sizeof(Settings));
+    EXPECT_GT(visited + 4, sizeof(Settings)) << count << " settings";  // 4: padding after a bool
+}
+
+TEST(MakeParams, TheFramesGeometryGoesThrough) {
+    const FrameGeometry g = geometry();
+    const FrameParams p = makeParams(Settings(), g);
+    for (const ViewRays& rays : {p.gather.cameraRays, p.sum.cameraRays, p.directLight.cameraRays})
+        EXPECT_EQ(std::memcmp(&rays, &g.cameraRays, sizeof rays), 0);
+    EXPECT_EQ(p.gather.rsmSizePx, 64);
+    EXPECT_EQ(p.sum.rsmSizePx, 64);
+    EXPECT_EQ(p.gather.lightCount, 2);
+    EXPECT_EQ(p.sum.lightCount, 2);
+    EXPECT_EQ(p.directLight.lightCount, 2);
+    EXPECT_EQ(p.directLight.shadowWidthPx, 128);
+    EXPECT_EQ(p.directLight.shadowHeightPx, 96);
+    EXPECT_EQ(p.sum.firstRowPx, 0);
+}
+
+TEST(MakeParams, OutOfRangeIsRefusedByName) {
+    EXPECT_NO_THROW(validate(Settings()));
+    Settings settings;
+    int numbers = 0;
+    forEachSetting(settings, [&](const SettingInfo& info, auto& value) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        if constexpr (std::is_same_v<Value, int> || std::is_same_v<Value, float>) {
+            const Value kept = value;
+            std::vector<Value> wrong;
+            if constexpr (std::is_same_v<Value, int>) {
+                wrong = {int(info.min) - 1, int(info.max) + 1, std::numeric_limits<int>::min(),
+                         std::numeric_limits<int>::max()};
+            } else {
+                constexpr float kInfinity = std::numeric_limits<float>::infinity();
+                wrong = {std::nextafter(float(info.max), kInfinity), kInfinity, -kInfinity,
+                         std::numeric_limits<float>::quiet_NaN()};
+                wrong.push_back(info.min == 0.0 ? -1e-30f : float(info.min - 0.01 * std::fabs(info.min)));
+            }
+            for (const Value v : wrong) {
+                value = v;
+                EXPECT_THAT(test::thrown<UsageError>([&] { validate(settings); }),
+                            testing::StartsWith(std::string(info.name) + ": "))
+                    << v;
+            }
+            for (const double v : {info.min, info.max}) {
+                value = Value(v);
+                EXPECT_NO_THROW(validate(settings)) << info.name << " = " << v;
+            }
+            value = kept;
+            ++numbers;
+        }
+    });
+    EXPECT_GT(numbers, 3);
+}
+
+TEST(MakeParams, EverySettingIsExplained) {
+    std::vector<std::string> names;
+    const Settings defaults;
+    forEachSetting(defaults, [&](const SettingInfo& info, const auto& value) {
+        EXPECT_THAT(names, testing::Not(testing::Contains(info.name)));
+        names.emplace_back(info.name);
+        EXPECT_GT(std::strlen(info.help), 10u) << info.name;
+        if constexpr (std::is_enum_v<std::remove_cvref_t<decltype(value)>>) {
+            EXPECT_EQ(info.names.size(), std::size_t(info.max) + 1) << info.name;
+        }
+    });
+}
+
+}  // namespace
+}  // namespace earthshine

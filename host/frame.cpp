@@ -58,10 +58,9 @@ std::string faultOf(const Light& light) {
     if (isSpot != isPerspective(light.camera.clipFromView))
         return isSpot ? "camera: clipFromView: a spot needs a perspective projection"
                       : "camera: clipFromView: a directional light needs an orthographic projection";
-    if (!isSpot) return {};
     if (!(light.rangeM >= 0.0f)) return "rangeM: must not be negative; 0 is without end";
-    if (!(0.0f <= light.innerConeAngle && light.innerConeAngle < light.outerConeAngle &&
-          light.outerConeAngle < std::numbers::pi_v<float> / 2))
+    if (isSpot && !(0.0f <= light.innerConeAngle && light.innerConeAngle < light.outerConeAngle &&
+                    light.outerConeAngle < std::numbers::pi_v<float> / 2))
         return "a spot needs 0 <= innerConeAngle < outerConeAngle < pi/2, in radians";
     return {};
 }

@@ -4,13 +4,10 @@
 #include <cmath>
 #include <fstream>
 #include <initializer_list>
-#include <numbers>
 #include <sstream>
 
 #include <fmt/format.h>
-#include <glm/gtc/matrix_access.hpp>
 #include <glm/gtc/type_ptr.hpp>
-#include <glm/matrix.hpp>
 #include <nlohmann/json.hpp>
 
 #include "earthshine/error.hpp"
@@ -88,7 +85,9 @@ glm::mat4 readMatrix(const Place& place) {
 Camera readCamera(const Place& place) {
     place.allowOnly({"viewFromWorld", "clipFromView"});
     const Place view = place.at("viewFromWorld"), clip = place.at("clipFromView");
-    return {readMatrix(view), readMatrix(clip)};
+    const Camera camera{readMatrix(view), readMatrix(clip)};
+    if (const std::string fault = faultOf(camera); !fault.empty()) place.fail(fault);
+    return camera;
 }
 
 ImageFiles readFiles(const Place& place, std::initializer_list<const char*> required,

@@ -309,7 +309,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadJson{"\"directional\"", "\"point\"", "lights[0]: type: expected \"directional\" or \"spot\""},
         BadJson{"\"directional\"", "\"spot\"", "lights[0]"},
         BadJson{"\"spot\"", "\"directional\"", "lights[1]: camera: clipFromView: a directional light needs"},
-        BadJson{"\"intensity\": [", "\"intensity\": [-", "lights[0]: intensity: must not be negative"},
+        BadJson{"\"intensity\": [", "\"intensity\": [-", "lights[0]: intensity: must be finite and not negative"},
         BadJson{"\"intensity\": [", "\"intensity\": [1e999, 1, 1], \"comment\": [", "number overflow"},
         BadJson{"\"intensity\": [", "\"intensity\": [1e99, 1, 1], \"comment\": [", "too large for a float"},
         BadJson{"\"rangeM\": 0.0", "\"rangeM\": -1", "lights[0]: rangeM: must not be negative"},

@@ -8,6 +8,7 @@ namespace earthshine::cli {
 void addDevices(Options& program);
 void addRender(Options& program);
 void addIndirect(Options& program);
+void addReference(Options& program);
 void addCompare(Options& program);
 
 }  // namespace earthshine::cli

@@ -21,6 +21,7 @@ int runProgram(int argc, char** argv) {
     program.options().flag("-q,--quiet", quiet, "Say only what fails");
     addRender(program.options());
     addIndirect(program.options());
+    addReference(program.options());
     addCompare(program.options());
     addDevices(program.options());
     if (!program.parse(argc, argv)) return 0;

@@ -1,10 +1,12 @@
 #include "raster/trace/path_tracer.hpp"
 
-#include <atomic>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <mutex>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <glm/glm.hpp>
@@ -24,6 +26,21 @@ namespace {
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kBouncesBeforeRoulette = 3;
 constexpr float kMostSurvival = 0.95f;  // so that paths end even among perfect reflectors
+
+// Pixels a side, and samples at once, of a block whose rays are traced in the order of their directions.
+constexpr int kBlockPx = 8;
+constexpr int kBlockSamples = 16;
+
+/// Where in the unit square a point lies, along a curve that stays close to itself (Morton's).
+std::uint32_t cellOrder(const glm::vec2& point) {
+    const auto spread = [](float t) {
+        const auto x = std::uint32_t(t * 32.0f);
+        std::uint32_t bits = 0;
+        for (std::uint32_t b = 0; b < 5; ++b) bits |= (x >> b & 1u) << (2 * b);
+        return bits;
+    };
+    return spread(point.x) | spread(point.y) << 1;
+}
 
 /// A direction about the unit vector `normal`, as likely as its cosine.
 glm::vec3 cosineDirection(const glm::vec3& normal, const glm::vec2& random) {
@@ -107,29 +124,31 @@ struct PathTracer::Impl {
         surfaces.resize(count);
         direct.resize(count);
         for (auto& half : sums.halves) half.assign(count, glm::dvec3(0.0));
-        forEachRow([this](std::size_t pixel, int x, int y, Work& work) { lookThrough(pixel, x, y, work); });
+        forEachBlock(s.extent.heightPx, [&](int y, Work& work) {
+            for (int x = 0; x < s.extent.widthPx; ++x) lookThrough(pixelAt(x, y), x, y, work);
+        });
         for (const auto& surface : surfaces) surfacePixels += surface.has_value();
     }
 
-    /// Calls body(pixel, x, y, work) for every pixel, rows in parallel, and adds up the rays.
+    /// Calls body(block, work) for `count` blocks in parallel, and adds up the rays.
     template <class Body>
-    void forEachRow(Body&& body) {
+    void forEachBlock(int count, Body&& body) {
         const auto start = std::chrono::steady_clock::now();
-        std::atomic<std::size_t> cameraRays{0}, gatherRays{0}, shadowRays{0}, lightRays{0};
-        parallelFor(settings.extent.heightPx, settings.threads, [&](int y) {
+        std::mutex mutex;
+        parallelFor(count, settings.threads, [&](int block) {
             Work work;
-            for (int x = 0; x < settings.extent.widthPx; ++x)
-                body(std::size_t(y) * std::size_t(settings.extent.widthPx) + std::size_t(x), x, y, work);
-            cameraRays += work.rays.camera;
-            gatherRays += work.rays.gather;
-            shadowRays += work.rays.shadow;
-            lightRays += work.rays.light;
+            body(block, work);
+            const std::lock_guard lock(mutex);
+            rays.camera += work.rays.camera;
+            rays.gather += work.rays.gather;
+            rays.shadow += work.rays.shadow;
+            rays.light += work.rays.light;
         });
-        rays.camera += cameraRays;
-        rays.gather += gatherRays;
-        rays.shadow += shadowRays;
-        rays.light += lightRays;
         rays.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
+
+    std::size_t pixelAt(int x, int y) const {
+        return std::size_t(y) * std::size_t(settings.extent.widthPx) + std::size_t(x);
     }
 
     void lookThrough(std::size_t pixel, int x, int y, Work& work) {
@@ -137,10 +156,11 @@ struct PathTracer::Impl {
         Hit hit;
         ++work.rays.camera;
         if (!scene.closest(ray, hit)) return;
-        Surface surface = scene.surface(hit, camera.through(x + 1, y), camera.through(x, y + 1));
+        Surface surface = scene.surface(ray, hit);
         surface.turnTowards(-ray.direction);
+        scene.shade(hit, camera.through(x + 1, y), camera.through(x, y + 1), surface);
         surfaces[pixel] = surface;
-        direct[pixel] = directIrradiance(surface, work);
+        direct[pixel] = directIrradiance(surface, work, [] {});
     }
 
     bool isLit(const Surface& surface, const Incident& incident, Work& work) const {
@@ -148,35 +168,46 @@ struct PathTracer::Impl {
         return !scene.blocksLight({surface.leave(incident.towards), incident.towards, 0.0f, incident.tFar});
     }
 
-    /// Lux at the side of the surface that it is turned to.
-    glm::vec3 directIrradiance(const Surface& surface, Work& work) const {
+    /// Lux at the side of the surface that it is turned to. `shade` is called before its normal is looked at, which is
+    /// not at all if it lies in shadow.
+    template <class Shade>
+    glm::vec3 directIrradiance(const Surface& surface, Work& work, Shade&& shade) const {
         glm::vec3 sum(0.0f);
         for (const LightSource& light : lights.all()) {
             const Incident incident = light.incident(surface.position);
-            const float cosine = glm::dot(surface.normal, incident.direction);
-            if (!(cosine > 0.0f) || !(glm::dot(surface.geometricNormal, incident.direction) > 0.0f)) continue;
+            if (!(glm::dot(surface.geometricNormal, incident.direction) > 0.0f)) continue;
             if (incident.illuminance == glm::vec3(0.0f) || !isLit(surface, incident, work)) continue;
-            sum += incident.illuminance * cosine;
+            shade();
+            sum += incident.illuminance * std::max(glm::dot(surface.normal, incident.direction), 0.0f);
         }
         return sum;
     }
 
     /// One sample of the indirect irradiance, by a path.
-    glm::vec3 pathSample(const Surface& start, Sampler& sampler, Work& work) const {
+    glm::vec3 pathSample(const Surface& start, glm::vec2 random, Sampler& sampler, Work& work) const {
         glm::vec3 irradiance(0.0f), throughput(1.0f);
         Surface surface = start;
         for (int bounce = 1; settings.bounceCount == kAllBounces || bounce <= settings.bounceCount; ++bounce) {
-            const glm::vec3 direction = cosineDirection(surface.normal, sampler.next2());
+            if (bounce > 1) random = sampler.next2();
+            const glm::vec3 direction = cosineDirection(surface.normal, random);
             if (!(glm::dot(direction, surface.geometricNormal) > 0.0f)) break;
             Hit hit;
             ++work.rays.gather;
-            if (!scene.closest({surface.leave(direction), direction}, hit)) break;
-            surface = scene.surface(hit);
+            const Ray ray{surface.leave(direction), direction};
+            if (!scene.closest(ray, hit)) break;
+            surface = scene.surface(ray, hit);
             surface.turnTowards(-direction);
+            bool isShaded = false;
+            const auto shade = [&] {
+                if (!std::exchange(isShaded, true)) scene.shade(hit, surface);
+            };
+            const glm::vec3 arriving = directIrradiance(surface, work, shade);
+            if (isShaded) irradiance += throughput * surface.albedo * arriving;
+            if (bounce == settings.bounceCount) break;
+            shade();
+            if (surface.normal == glm::vec3(0.0f)) break;
             // pi from the cosine's density, and 1 / pi from the diffuse surface.
             throughput *= surface.albedo;
-            irradiance += throughput * directIrradiance(surface, work);
-            if (surface.normal == glm::vec3(0.0f)) break;
             if (settings.bounceCount == kAllBounces && bounce >= kBouncesBeforeRoulette) {
                 const float survival = std::min(std::max({throughput.r, throughput.g, throughput.b}), kMostSurvival);
                 if (!(sampler.next1() < survival)) break;
@@ -187,10 +218,14 @@ struct PathTracer::Impl {
     }
 
     /// What the light `index` sends to x by way of y, divided by the density with which y was found.
-    glm::vec3 unoccludedTransfer(const Surface& x, Surface y, std::size_t index, bool isSeenByLight, Work& work) const {
+    glm::vec3 unoccludedTransfer(const Surface& x, const Hit& hit, Surface y, std::size_t index, bool isSeenByLight,
+                                 Work& work) const {
         const LightSource& light = lights.all()[index];
         const Incident incident = light.incident(y.position);
         if (incident.illuminance == glm::vec3(0.0f) || !y.turnTowards(incident.direction)) return glm::vec3(0.0f);
+        const float raysPerArea = light.raysPerArea(y.position, y.geometricNormal);
+        if (!(raysPerArea > 0.0f) || (!isSeenByLight && !isLit(y, incident, work))) return glm::vec3(0.0f);
+        scene.shade(hit, y);
         const glm::vec3 d = y.position - x.position;
         const float distance2 = glm::dot(d, d);
         if (!(distance2 > 0.0f)) return glm::vec3(0.0f);
@@ -200,53 +235,85 @@ struct PathTracer::Impl {
         float density = 0.0f;
         if (settings.strategy != Strategy::FromLight)
             density += cosX / kPi * std::abs(glm::dot(y.geometricNormal, w)) / distance2;
-        const float raysPerArea = light.raysPerArea(y.position, y.geometricNormal);
-        if (!(raysPerArea > 0.0f)) return glm::vec3(0.0f);
         if (settings.strategy != Strategy::FromSurface) density += lights.chance(index) * raysPerArea;
-        if (!(density > 0.0f) || (!isSeenByLight && !isLit(y, incident, work))) return glm::vec3(0.0f);
+        if (!(density > 0.0f)) return glm::vec3(0.0f);
         const float arriving = std::abs(glm::dot(y.geometricNormal, incident.direction));
         return y.albedo * incident.illuminance * (arriving / kPi * cosX * cosY / (distance2 * density));
     }
 
     /// One sample of the indirect irradiance with nothing in the way.
-    glm::vec3 unoccludedSample(const Surface& x, Sampler& sampler, Work& work) const {
+    glm::vec3 unoccludedSample(const Surface& x, const glm::vec2& onSurface, Sampler& sampler, Work& work) const {
         glm::vec3 irradiance(0.0f);
         if (lights.empty()) return irradiance;
         const std::size_t drawn = lights.draw(sampler.next1());
-        const glm::vec2 onLight = sampler.next2(), onSurface = sampler.next2();
+        const glm::vec2 onLight = sampler.next2();
         if (settings.strategy != Strategy::FromSurface) {
             Ray ray;
             Hit hit;
             if (lights.all()[drawn].sampleRay(onLight, ray)) {
                 ++work.rays.light;
-                if (scene.closest(ray, hit)) irradiance += unoccludedTransfer(x, scene.surface(hit), drawn, true, work);
+                if (scene.closest(ray, hit))
+                    irradiance += unoccludedTransfer(x, hit, scene.surface(ray, hit), drawn, true, work);
             }
         }
         if (settings.strategy != Strategy::FromLight) {
             const glm::vec3 direction = cosineDirection(x.normal, onSurface);
             ++work.rays.gather;
-            scene.allHits({x.leave(direction), direction}, work.hits);
+            const Ray ray{x.leave(direction), direction};
+            scene.allHits(ray, work.hits);
             for (const Hit& hit : work.hits) {
-                const Surface y = scene.surface(hit);
+                const Surface y = scene.surface(ray, hit);
                 for (std::size_t light = 0; light < lights.all().size(); ++light)
-                    irradiance += unoccludedTransfer(x, y, light, false, work);
+                    irradiance += unoccludedTransfer(x, hit, y, light, false, work);
             }
         }
         return irradiance;
     }
 
-    void addSamples(int perPixel) {
-        const int first = sums.sampleCount;
-        forEachRow([&](std::size_t pixel, int, int, Work& work) {
-            if (!surfaces[pixel] || surfaces[pixel]->normal == glm::vec3(0.0f)) return;
-            for (int i = first; i < first + perPixel; ++i) {
-                const auto half = std::size_t(i & 1);
-                Sampler sampler(hashed(std::uint32_t(2 * pixel + half), settings.seed), std::uint32_t(i / 2));
-                const glm::vec3 sample = settings.indirectVisibility
-                                             ? pathSample(*surfaces[pixel], sampler, work)
-                                             : unoccludedSample(*surfaces[pixel], sampler, work);
-                sums.halves[half][pixel] += glm::dvec3(sample);
+    /// Samples of a square of pixels, traced in the order of their directions: rays that fly together find what they
+    /// need in the caches. The sums are made in the order of the samples, so that nothing depends on how many are
+    /// traced at once.
+    void sampleBlock(int left, int top, int first, int count, Work& work) {
+        struct Job {
+            std::uint32_t order;
+            int sample;
+            std::size_t pixel, slot;
+            glm::vec2 random;
+            Sampler sampler;
+        };
+        std::vector<Job> jobs;
+        const auto [width, height] = settings.extent;
+        for (int y = top; y < std::min(top + kBlockPx, height); ++y)
+            for (int x = left; x < std::min(left + kBlockPx, width); ++x) {
+                const std::size_t pixel = pixelAt(x, y);
+                if (!surfaces[pixel] || surfaces[pixel]->normal == glm::vec3(0.0f)) continue;
+                for (int i = first; i < first + count; ++i) {
+                    const auto sequence = hashed(std::uint32_t(2 * pixel) + std::uint32_t(i & 1), settings.seed);
+                    Sampler sampler(sequence, std::uint32_t(i / 2));
+                    const glm::vec2 random = sampler.next2();
+                    jobs.push_back({cellOrder(random), i, pixel, jobs.size(), random, sampler});
+                }
             }
+        std::vector<glm::vec3> samples(jobs.size());
+        std::vector<const Job*> ordered;
+        for (const Job& job : jobs) ordered.push_back(&job);
+        std::sort(ordered.begin(), ordered.end(), [](const Job* a, const Job* b) { return a->order < b->order; });
+        for (const Job* job : ordered) {
+            Sampler sampler = job->sampler;
+            const Surface& surface = *surfaces[job->pixel];
+            samples[job->slot] = settings.indirectVisibility ? pathSample(surface, job->random, sampler, work)
+                                                             : unoccludedSample(surface, job->random, sampler, work);
+        }
+        for (const Job& job : jobs) sums.halves[job.sample & 1][job.pixel] += glm::dvec3(samples[job.slot]);
+    }
+
+    void addSamples(int perPixel) {
+        const int columns = (settings.extent.widthPx + kBlockPx - 1) / kBlockPx;
+        const int rows = (settings.extent.heightPx + kBlockPx - 1) / kBlockPx;
+        forEachBlock(columns * rows, [&](int block, Work& work) {
+            for (int done = 0; done < perPixel; done += kBlockSamples)
+                sampleBlock(block % columns * kBlockPx, block / columns * kBlockPx, sums.sampleCount + done,
+                            std::min(kBlockSamples, perPixel - done), work);
         });
         sums.sampleCount += perPixel;
     }

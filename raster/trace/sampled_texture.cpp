@@ -26,6 +26,7 @@ const std::array<float, 256>& decodedBytes() {
 int wrapped(int x, int size, raster::Wrap wrap) {
     switch (wrap) {
         case raster::Wrap::Repeat:
+            if ((size & (size - 1)) == 0) return x & (size - 1);  // divisions are slow
             return ((x % size) + size) % size;
         case raster::Wrap::MirroredRepeat: {
             const int at = ((x % (2 * size)) + 2 * size) % (2 * size);
@@ -71,10 +72,11 @@ glm::vec4 SampledTexture::texel(const Level& level, int x, int y) const {
     return isSrgb_ ? glm::vec4(decoded(value.x), decoded(value.y), decoded(value.z), value.w) : value;
 }
 
-glm::vec4 SampledTexture::sampleLevel(const glm::vec2& uv, int index) const {
-    const Level& level = levels_[std::size_t(index)];
+/// Bilinear, or the nearest, of texelAt(x, y).
+template <class Texel>
+auto SampledTexture::filtered(const glm::vec2& uv, const Level& level, Texel&& texelAt) const {
     const auto at = [&](int x, int y) {
-        return texel(level, wrapped(x, level.widthPx, wrapU_), wrapped(y, level.heightPx, wrapV_));
+        return texelAt(wrapped(x, level.widthPx, wrapU_), wrapped(y, level.heightPx, wrapV_));
     };
     const float x = tame(uv.x * float(level.widthPx)), y = tame(uv.y * float(level.heightPx));
     if (!linearFilter_) return at(int(std::floor(x)), int(std::floor(y)));
@@ -82,6 +84,26 @@ glm::vec4 SampledTexture::sampleLevel(const glm::vec2& uv, int index) const {
     const float fx = x - 0.5f - left, fy = y - 0.5f - top;
     const int x0 = int(left), y0 = int(top);
     return glm::mix(glm::mix(at(x0, y0), at(x0 + 1, y0), fx), glm::mix(at(x0, y0 + 1), at(x0 + 1, y0 + 1), fx), fy);
+}
+
+glm::vec4 SampledTexture::sampleLevel(const glm::vec2& uv, int index) const {
+    const Level& level = levels_[std::size_t(index)];
+    return filtered(uv, level, [&](int x, int y) { return texel(level, x, y); });
+}
+
+float SampledTexture::alpha(const glm::vec2& uv) const {
+    const Level& level = levels_[0];
+    return filtered(uv, level, [&](int x, int y) {
+        return float(alpha_[std::size_t(y) * std::size_t(level.widthPx) + std::size_t(x)]) / 65535.0f;
+    });
+}
+
+void SampledTexture::prepareAlpha() {
+    const Level& level = levels_[0];
+    if (!alpha_.empty()) return;
+    for (int y = 0; y < level.heightPx; ++y)
+        for (int x = 0; x < level.widthPx; ++x)
+            alpha_.push_back(std::uint16_t(std::lround(texel(level, x, y).a * 65535.0f)));
 }
 
 glm::vec4 SampledTexture::sample(const glm::vec2& uv, const glm::vec2& dx, const glm::vec2& dy) const {

@@ -19,8 +19,8 @@ using raster::AlphaMode;
 using raster::Material;
 using raster::TextureRef;
 
-// Interpolating a position and meeting a triangle are off by a few units in the last place of the triangle's largest
-// coordinate; 32 of them are 40 micrometres at 10 m from the middle of the scene.
+// Where a ray meets a triangle is off by a few units in the last place of the largest coordinate that goes into it, and
+// so may be where the next ray meets it again. 32 of them are 40 micrometres in a scene that reaches 10 m.
 constexpr float kOffsetUlps = 32.0f;
 
 /// What interpolates over a triangle, beside the position.
@@ -36,15 +36,32 @@ struct Triangle {
     std::uint32_t material;
 };
 
-/// Triangles that Embree treats alike.
-enum Kind { kPlain, kSingleSided, kMasked, kKinds };
+/// All that decides about a hole, in one place: asked far more often than anything else of a triangle.
+struct Mask {
+    glm::vec2 uv[3];  ///< of the texture
+    float alpha[3];   ///< beside the texture's
+    std::int32_t texture;
+    float cutoff;
+};
 
+/// Triangles that Embree treats alike.
+enum Kind { kPlain, kSingleSided, kMasked, kMaskedSingleSided, kKinds };
+
+constexpr bool isMasked(int kind) {
+    return kind == kMasked || kind == kMaskedSingleSided;
+}
+
+constexpr bool isSingleSided(int kind) {
+    return kind == kSingleSided || kind == kMaskedSingleSided;
+}
+
+/// Whom a surface must be there for.
 enum class Rule { Look, Light, Everything };
 
-/// What the filters know of the ray.
+/// What the filters know of the query, beside the ray.
 struct Context {
     RTCIntersectContext embree;
-    Rule rule;
+    Rule rule = Rule::Look;
     std::vector<Hit>* hits = nullptr;
 };
 
@@ -55,7 +72,7 @@ struct Release {
 
 glm::vec3 unitOr0(const glm::vec3& v) {
     const float length2 = glm::dot(v, v);
-    return length2 > 1e-30f ? v / std::sqrt(length2) : glm::vec3(0.0f);
+    return length2 > 1e-36f ? v / std::sqrt(length2) : glm::vec3(0.0f);
 }
 
 /// How a texture coordinate changes to the neighbouring pixels; absent away from the camera.
@@ -70,13 +87,17 @@ struct TraceScene::Impl {
     std::vector<Attributes> attributes;
     std::vector<Triangle> triangles;
     std::size_t firstOfKind[kKinds] = {};
+    std::vector<Mask> masks;  ///< of the triangles from firstOfKind[kMasked] on
     std::vector<Material> materials;
     std::vector<SampledTexture> textures;
     glm::dvec3 originWs{0.0};
+    float offset = 0.0f;
     std::unique_ptr<RTCDeviceTy, Release> device;
     std::unique_ptr<RTCSceneTy, Release> scene;
 
     void place(const raster::Scene& from);
+    void makeMasks();
+    bool isHole(std::uint32_t primitive, int kind, float u, float v) const;
     void build();
     void addGeometry(Kind kind, std::size_t count);
 
@@ -87,10 +108,17 @@ struct TraceScene::Impl {
     glm::vec4 read(const TextureRef& ref, const Triangle& triangle, float u, float v, const Footprint* footprint) const;
     glm::vec4 color(const Triangle& triangle, float u, float v, const Footprint* footprint) const;
     glm::vec3 mappedNormal(const Triangle& triangle, float u, float v, const Footprint* footprint) const;
-    Surface surface(const Hit& hit, const Footprint* footprint) const;
+    void shade(const Hit& hit, const Footprint* footprint, Surface& surface) const;
     void neighbour(const Triangle& triangle, const Ray& ray, float& u, float& v) const;
 
-    bool isThere(const Hit& hit, float facing, Rule rule, Kind kind) const;
+    Hit hitOf(const RTCRay& ray, const RTCHit& found, int kind) const {
+        return {ray.tfar,
+                std::uint32_t(firstOfKind[kind]) + found.primID,
+                found.u,
+                found.v,
+                {found.Ng_x, found.Ng_y, found.Ng_z},
+                !isSingleSided(kind)};
+    }
     template <Kind kKind>
     static void filter(const RTCFilterFunctionNArguments* arguments);
 };
@@ -125,9 +153,9 @@ void TraceScene::Impl::place(const raster::Scene& from) {
                  {vertex.uv0, vertex.uv1},
                  vertex.color});
         }
-        const Kind kind = material.alphaMode == AlphaMode::Mask ? kMasked
-                          : material.doubleSided                ? kPlain
-                                                                : kSingleSided;
+        const bool masked = material.alphaMode == AlphaMode::Mask;
+        const Kind kind =
+            material.doubleSided ? (masked ? kMasked : kPlain) : (masked ? kMaskedSingleSided : kSingleSided);
         for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
             Triangle triangle{{first + mesh.indices[i], first + mesh.indices[i + 1], first + mesh.indices[i + 2]},
                               std::uint32_t(mesh.material)};
@@ -139,7 +167,35 @@ void TraceScene::Impl::place(const raster::Scene& from) {
         firstOfKind[kind] = triangles.size();
         triangles.insert(triangles.end(), byKind[kind].begin(), byKind[kind].end());
     }
+    glm::vec3 largest(0.0f);
+    for (const glm::vec3& position : positions) largest = glm::max(largest, glm::abs(position));
+    offset = kOffsetUlps * std::numeric_limits<float>::epsilon() * std::max({largest.x, largest.y, largest.z});
+    makeMasks();
     positions.emplace_back(0.0f);  // Embree reads 16 bytes at the last corner
+}
+
+void TraceScene::Impl::makeMasks() {
+    for (std::size_t i = firstOfKind[kMasked]; i < triangles.size(); ++i) {
+        const Triangle& triangle = triangles[i];
+        const Material& material = materials[triangle.material];
+        const TextureRef& ref = material.baseColorTexture;
+        Mask mask{{}, {}, ref.texture, material.alphaCutoff};
+        for (int c = 0; c < 3; ++c) {
+            const Attributes& corner = attributes[triangle.corners[c]];
+            mask.alpha[c] = material.baseColor.a * corner.color.a;
+            if (ref.texture >= 0) mask.uv[c] = glm::vec2(ref.uvFromUv * glm::vec3(corner.uv[ref.texCoord], 1.0f));
+        }
+        masks.push_back(mask);
+        if (ref.texture >= 0) textures[std::size_t(ref.texture)].prepareAlpha();
+    }
+}
+
+bool TraceScene::Impl::isHole(std::uint32_t primitive, int kind, float u, float v) const {
+    const Mask& mask = masks[firstOfKind[kind] - firstOfKind[kMasked] + primitive];
+    float alpha = mixed(mask.alpha[0], mask.alpha[1], mask.alpha[2], u, v);
+    if (mask.texture >= 0)
+        alpha *= textures[std::size_t(mask.texture)].alpha(mixed(mask.uv[0], mask.uv[1], mask.uv[2], u, v));
+    return alpha < mask.cutoff;
 }
 
 void TraceScene::Impl::addGeometry(Kind kind, std::size_t count) {
@@ -149,7 +205,8 @@ void TraceScene::Impl::addGeometry(Kind kind, std::size_t count) {
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(),
                                firstOfKind[kind] * sizeof(Triangle), sizeof(Triangle), count);
     rtcSetGeometryUserData(geometry, this);
-    const RTCFilterFunctionN filters[] = {filter<kPlain>, filter<kSingleSided>, filter<kMasked>};
+    const RTCFilterFunctionN filters[] = {filter<kPlain>, filter<kSingleSided>, filter<kMasked>,
+                                          filter<kMaskedSingleSided>};
     rtcSetGeometryIntersectFilterFunction(geometry, filters[kind]);
     if (kind != kPlain) rtcSetGeometryOccludedFilterFunction(geometry, filters[kind]);
     rtcCommitGeometry(geometry);
@@ -171,26 +228,22 @@ void TraceScene::Impl::build() {
         throw Error(fmt::format("Embree: cannot build over {} triangles (error {})", triangles.size(), int(error)));
 }
 
-bool TraceScene::Impl::isThere(const Hit& hit, float facing, Rule rule, Kind kind) const {
-    const Triangle& triangle = triangles[hit.triangle];
-    if (rule != Rule::Everything && !materials[triangle.material].doubleSided) {
-        // `facing` < 0: the ray comes from the front. A ray of Rule::Light runs against the light.
-        if (rule == Rule::Look ? facing >= 0.0f : facing <= 0.0f) return false;
-    }
-    return kind != kMasked || color(triangle, hit.u, hit.v, nullptr).a >= materials[triangle.material].alphaCutoff;
-}
-
+/// Embree asks of every hit that it is about to take, so this looks up no more than it must.
 template <Kind kKind>
 void TraceScene::Impl::filter(const RTCFilterFunctionNArguments* arguments) {
-    const auto& impl = *static_cast<const Impl*>(arguments->geometryUserPtr);
     const auto& context = *reinterpret_cast<const Context*>(arguments->context);
     if (kKind == kPlain && context.rule != Rule::Everything) return;
     const auto* ray = reinterpret_cast<const RTCRay*>(arguments->ray);
     const auto* found = reinterpret_cast<const RTCHit*>(arguments->hit);
-    const float facing = ray->dir_x * found->Ng_x + ray->dir_y * found->Ng_y + ray->dir_z * found->Ng_z;
-    const Hit hit{ray->tfar, std::uint32_t(impl.firstOfKind[kKind]) + found->primID, found->u, found->v};
-    const bool isThere = impl.isThere(hit, facing, context.rule, kKind);
-    if (context.hits && isThere) context.hits->push_back(hit);
+    bool isThere = true;
+    if (isSingleSided(kKind) && context.rule != Rule::Everything) {
+        // Below 0 the ray comes from the front. A ray of Rule::Light runs against the light.
+        const float facing = ray->dir_x * found->Ng_x + ray->dir_y * found->Ng_y + ray->dir_z * found->Ng_z;
+        isThere = context.rule == Rule::Look ? facing < 0.0f : facing > 0.0f;
+    }
+    const auto& impl = *static_cast<const Impl*>(arguments->geometryUserPtr);
+    if (isMasked(kKind) && isThere) isThere = !impl.isHole(found->primID, kKind, found->u, found->v);
+    if (context.hits && isThere) context.hits->push_back(impl.hitOf(*ray, *found, kKind));
     if (context.hits || !isThere) arguments->valid[0] = 0;  // look on
 }
 
@@ -233,18 +286,11 @@ glm::vec3 TraceScene::Impl::mappedNormal(const Triangle& triangle, float u, floa
     return unitOr0(mapped.x * tangent + mapped.y * bitangent + mapped.z * normal);
 }
 
-Surface TraceScene::Impl::surface(const Hit& hit, const Footprint* footprint) const {
+void TraceScene::Impl::shade(const Hit& hit, const Footprint* footprint, Surface& s) const {
     const Triangle& triangle = triangles[hit.triangle];
     const Material& material = materials[triangle.material];
-    const glm::vec3& a = positions[triangle.corners[0]];
-    const glm::vec3& b = positions[triangle.corners[1]];
-    const glm::vec3& c = positions[triangle.corners[2]];
-    Surface s;
-    s.position = mixed(a, b, c, hit.u, hit.v);
-    s.geometricNormal = unitOr0(glm::cross(b - a, c - a));
-    const glm::vec3 largest = glm::max(glm::max(glm::abs(a), glm::abs(b)), glm::abs(c));
-    s.offset = kOffsetUlps * std::numeric_limits<float>::epsilon() * std::max({largest.x, largest.y, largest.z});
-    s.normal = mappedNormal(triangle, hit.u, hit.v, footprint);
+    const glm::vec3 normal = mappedNormal(triangle, hit.u, hit.v, footprint);
+    s.normal = s.isTurned ? -normal : normal;
     float metallic = material.metallic;
     if (material.metallicTexture.texture >= 0)
         metallic *= read(material.metallicTexture, triangle, hit.u, hit.v, footprint).b;
@@ -252,8 +298,6 @@ Surface TraceScene::Impl::surface(const Hit& hit, const Footprint* footprint) co
     s.emission = material.emission;
     if (material.emissionTexture.texture >= 0)
         s.emission *= glm::vec3(read(material.emissionTexture, triangle, hit.u, hit.v, footprint));
-    s.isDoubleSided = material.doubleSided;
-    return s;
 }
 
 /// Barycentric coordinates of where a ray meets the triangle's plane; u and v stay as they are if it does not.
@@ -272,6 +316,7 @@ bool Surface::turnTowards(const glm::vec3& direction) {
     if (glm::dot(geometricNormal, direction) >= 0.0f) return true;
     geometricNormal = -geometricNormal;
     normal = -normal;
+    isTurned = !isTurned;
     return isDoubleSided;
 }
 
@@ -291,12 +336,18 @@ RTCRay embreeRay(const Ray& ray) {
     return result;
 }
 
-Context contextFor(Rule rule, std::vector<Hit>* hits = nullptr) {
+Context contextFor(Rule rule) {
     Context context{};
     rtcInitIntersectContext(&context.embree);
     context.rule = rule;
-    context.hits = hits;
     return context;
+}
+
+RTCRayHit nearest(RTCScene scene, Context& context, const Ray& ray) {
+    RTCRayHit query{embreeRay(ray), {}};
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene, &context.embree, &query);
+    return query;
 }
 
 }  // namespace
@@ -310,12 +361,9 @@ TraceScene::~TraceScene() = default;
 
 bool TraceScene::closest(const Ray& ray, Hit& hit) const {
     Context context = contextFor(Rule::Look);
-    RTCRayHit query{embreeRay(ray), {}};
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(impl_->scene.get(), &context.embree, &query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    hit = {query.ray.tfar, std::uint32_t(impl_->firstOfKind[query.hit.geomID]) + query.hit.primID, query.hit.u,
-           query.hit.v};
+    const RTCRayHit found = nearest(impl_->scene.get(), context, ray);
+    if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+    hit = impl_->hitOf(found.ray, found.hit, int(found.hit.geomID));
     return true;
 }
 
@@ -328,22 +376,30 @@ bool TraceScene::blocksLight(const Ray& ray) const {
 
 void TraceScene::allHits(const Ray& ray, std::vector<Hit>& hits) const {
     hits.clear();
-    Context context = contextFor(Rule::Everything, &hits);
-    RTCRayHit query{embreeRay(ray), {}};
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(impl_->scene.get(), &context.embree, &query);
+    Context context = contextFor(Rule::Everything);
+    context.hits = &hits;
+    nearest(impl_->scene.get(), context, ray);
 }
 
-Surface TraceScene::surface(const Hit& hit) const {
-    return impl_->surface(hit, nullptr);
+Surface TraceScene::surface(const Ray& ray, const Hit& hit) const {
+    Surface s;
+    s.position = ray.origin + hit.t * ray.direction;
+    s.geometricNormal = unitOr0(hit.normal);
+    s.offset = impl_->offset;
+    s.isDoubleSided = hit.isDoubleSided;
+    return s;
 }
 
-Surface TraceScene::surface(const Hit& hit, const Ray& right, const Ray& below) const {
+void TraceScene::shade(const Hit& hit, Surface& surface) const {
+    impl_->shade(hit, nullptr, surface);
+}
+
+void TraceScene::shade(const Hit& hit, const Ray& right, const Ray& below, Surface& surface) const {
     const Triangle& triangle = impl_->triangles[hit.triangle];
     Footprint footprint{hit.u, hit.v, hit.u, hit.v};
     impl_->neighbour(triangle, right, footprint.rightU, footprint.rightV);
     impl_->neighbour(triangle, below, footprint.belowU, footprint.belowV);
-    return impl_->surface(hit, &footprint);
+    impl_->shade(hit, &footprint, surface);
 }
 
 const glm::dvec3& TraceScene::originWs() const {

@@ -30,17 +30,20 @@ struct Hit {
     float t = 0.0f;
     std::uint32_t triangle = 0;
     float u = 0.0f, v = 0.0f;  ///< weights of the triangle's second and third corner
+    glm::vec3 normal{0.0f};    ///< the triangle's own, towards its front, of any length
+    bool isDoubleSided = false;
 };
 
-/// A point of a surface and what it is made of, in trace space.
+/// A point of a surface in trace space, and what it is made of once that was asked for (TraceScene::shade).
 struct Surface {
     glm::vec3 position{0.0f};
     glm::vec3 geometricNormal{0.0f};  ///< unit: the triangle's own, towards its front until it is turned
-    glm::vec3 normal{0.0f};           ///< unit, interpolated and normal-mapped, on the same side; 0 if it has none
-    glm::vec3 albedo{0.0f};           ///< [0; 1]
-    glm::vec3 emission{0.0f};         ///< cd/m^2
-    float offset = 0.0f;              ///< m: a ray that starts this far above the triangle cannot meet it again
+    float offset = 0.0f;              ///< m: a ray that starts this far above the triangle does not meet it again
     bool isDoubleSided = false;
+    bool isTurned = false;
+    glm::vec3 normal{0.0f};    ///< unit, interpolated and normal-mapped, on the same side; 0 if it has none
+    glm::vec3 albedo{0.0f};    ///< [0; 1]
+    glm::vec3 emission{0.0f};  ///< cd/m^2
 
     /// Turns a double-sided surface so that it faces `direction`. False if its back, which is not there, faces it.
     bool turnTowards(const glm::vec3& direction);
@@ -67,11 +70,15 @@ public:
     /// Everything along the ray, whichever side it shows, in no order. Masked-out points are not there.
     void allHits(const Ray& ray, std::vector<Hit>& hits) const;
 
-    /// The surface at a hit, with textures at their finest level; not turned.
-    Surface surface(const Hit& hit) const;
+    /// Where a hit is: the surface without what it is made of; not turned.
+    Surface surface(const Ray& ray, const Hit& hit) const;
+
+    /// Fills in normal, albedo and emission of the surface at a hit, with textures at their finest level. Textures are
+    /// slow: ask when it matters.
+    void shade(const Hit& hit, Surface& surface) const;
 
     /// The same with mipmaps, for a pixel whose right and lower neighbours look along the rays `right` and `below`.
-    Surface surface(const Hit& hit, const Ray& right, const Ray& below) const;
+    void shade(const Hit& hit, const Ray& right, const Ray& below, Surface& surface) const;
 
     /// World space = trace space + this.
     const glm::dvec3& originWs() const;

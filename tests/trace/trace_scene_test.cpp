@@ -38,7 +38,7 @@ TEST(TraceScene, SingleSidedSurfacesAreThereForWhoSeesTheirFront) {
     std::vector<Hit> hits;
     scene.allHits(kFromBehind, hits);
     EXPECT_EQ(hits.size(), 1u);
-    Surface surface = scene.surface(hits[0]);
+    Surface surface = scene.surface(kFromBehind, hits[0]);
     EXPECT_EQ(surface.geometricNormal, glm::vec3(0, 0, 1));
     EXPECT_FALSE(surface.turnTowards({0, 0, -1}));
 }
@@ -50,8 +50,12 @@ TEST(TraceScene, DoubleSidedSurfacesTurn) {
     ASSERT_TRUE(scene.closest(kFromBehind, hit));
     EXPECT_TRUE(scene.blocksLight(kFromFront));
     EXPECT_TRUE(scene.blocksLight(kFromBehind));
-    Surface surface = scene.surface(hit);
+    Surface surface = scene.surface(kFromBehind, hit);
+    scene.shade(hit, surface);
+    EXPECT_EQ(surface.normal, glm::vec3(0, 0, 1));
     EXPECT_TRUE(surface.turnTowards(-kFromBehind.direction));
+    EXPECT_EQ(surface.normal, glm::vec3(0, 0, -1));
+    scene.shade(hit, surface);
     EXPECT_EQ(surface.geometricNormal, glm::vec3(0, 0, -1));
     EXPECT_EQ(surface.normal, glm::vec3(0, 0, -1));
     EXPECT_LT(surface.leave({0, 0, -1}).z, surface.position.z);
@@ -65,7 +69,9 @@ TEST(TraceScene, MirroredPlacementsKeepTheirFront) {
     ASSERT_TRUE(scene.closest(kFromFront, hit));
     EXPECT_FALSE(scene.closest(kFromBehind, hit));
     ASSERT_TRUE(scene.closest(kFromFront, hit));
-    EXPECT_EQ(scene.surface(hit).normal, glm::vec3(0, 0, 1));
+    Surface surface = scene.surface(kFromFront, hit);
+    scene.shade(hit, surface);
+    EXPECT_EQ(surface.normal, glm::vec3(0, 0, 1));
 }
 
 TEST(TraceScene, MasksCutHoles) {
@@ -80,7 +86,9 @@ TEST(TraceScene, MasksCutHoles) {
     const Ray left{{-0.5f, 0.1f, 3.0f}, {0, 0, -1}}, right{{0.5f, 0.1f, 3.0f}, {0, 0, -1}};
     EXPECT_FALSE(scene.closest(left, hit));
     ASSERT_TRUE(scene.closest(right, hit));
-    EXPECT_EQ(scene.surface(hit).albedo, glm::vec3(0.0f, 0.5f, 0.0f));
+    Surface surface = scene.surface(right, hit);
+    scene.shade(hit, surface);
+    EXPECT_EQ(surface.albedo, glm::vec3(0.0f, 0.5f, 0.0f));
     EXPECT_FALSE(scene.blocksLight({{-0.5f, 0.1f, -3.0f}, {0, 0, 1}}));
     EXPECT_TRUE(scene.blocksLight({{0.5f, 0.1f, -3.0f}, {0, 0, 1}}));
     std::vector<Hit> hits;
@@ -122,9 +130,10 @@ TEST(TraceScene, OffsetsClearTheSurfaceWhereverItIs) {
             const glm::vec2 at = inner.next2() * 1.8f - 0.9f, tilt = inner.next2() * 2.0f - 1.0f;
             const glm::vec3 target = glm::vec3(glm::dvec3(place * glm::vec4(at, 0.0f, 1.0f)) - scene.originWs());
             Hit hit;
-            if (!scene.closest({target + 3.0f * normal, -normal}, hit)) continue;
+            const Ray ray{target + 3.0f * normal, -normal};
+            if (!scene.closest(ray, hit)) continue;
             ++met;
-            Surface surface = scene.surface(hit);
+            Surface surface = scene.surface(ray, hit);
             surface.turnTowards(normal);
             // Grazing directions are the hard ones.
             const glm::vec3 direction = glm::normalize(glm::vec3(place * glm::vec4(tilt, 0.0f, 0.0f))) + 1e-3f * normal;

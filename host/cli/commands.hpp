@@ -10,5 +10,6 @@ void addRender(Options& program);
 void addIndirect(Options& program);
 void addReference(Options& program);
 void addCompare(Options& program);
+void addQuality(Options& program);
 
 }  // namespace earthshine::cli

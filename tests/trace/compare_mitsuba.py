@@ -5,8 +5,9 @@
     python3 tests/trace/compare_mitsuba.py build/release/bin/earthshine data/atrium.glb --camera court
 
 Reads the same .glb, independently (no code of this project): meshes flattened into the world, base colours and their
-textures, alpha masks, the camera and the light. Normal maps are left out on both sides (the program gets a copy of the file without them),
-because the two renderers treat a shading normal that disagrees with the triangle's differently by design.
+textures, the camera and the light. Two things are left out on both sides, by way of a copy of the file: normal maps,
+since the two treat a shading normal that disagrees with its triangle differently by design, and alpha masks, which the
+shadow rays of Mitsuba's path integrator do not see through.
 
 Mitsuba's pixels are means over the pixel and ours are its centre, so the program makes a picture of four times the
 width and height, with as many samples in all, of which 4 x 4 pixels are averaged. The difference picture is of blocks
@@ -82,13 +83,14 @@ class Glb:
             yield from walk(root, np.eye(4))
 
 
-def without_normal_maps(path, out):
-    """A copy of a .glb whose materials have no normal texture."""
+def simplified(path, out):
+    """A copy of a .glb whose materials have no normal texture and no alpha mask."""
     data = bytearray(pathlib.Path(path).read_bytes())
     size = struct.unpack("<I", data[12:16])[0]
     content = json.loads(data[20:20 + size])
     for material in content.get("materials", ()):
-        material.pop("normalTexture", None)
+        for key in ("normalTexture", "alphaMode", "alphaCutoff"):
+            material.pop(key, None)
     text = json.dumps(content, separators=(",", ":")).encode()
     text += b" " * (size - len(text))
     assert len(text) == size, "the text only gets shorter"
@@ -126,15 +128,9 @@ def material_of(glb, index, cache):
         pixels = np.array(image.convert(mi.Bitmap.PixelFormat.RGBA, mi.Struct.Type.Float32, srgb_gamma=False))
         color = pixels[..., :3] * factor[:3]
         reflectance = {"type": "bitmap", "bitmap": mi.Bitmap(np.ascontiguousarray(color, np.float32)), "raw": True}
-        opacity = (pixels[..., 3] * factor[3] >= material.get("alphaCutoff", 0.5)).astype(np.float32)
     else:
         reflectance = {"type": "rgb", "value": factor[:3].tolist()}
-        opacity = None
     bsdf = {"type": "twosided", "nested": {"type": "diffuse", "reflectance": reflectance}}
-    if material.get("alphaMode") == "MASK" and opacity is not None:
-        bsdf = {"type": "mask", "nested": bsdf, "opacity": {
-            "type": "bitmap", "bitmap": mi.Bitmap(np.ascontiguousarray(opacity[..., None])), "raw": True,
-            "filter_type": "nearest"}}
     cache[index] = mi.load_dict(bsdf), transform
     return cache[index]
 
@@ -157,7 +153,6 @@ def shape_of(glb, primitive, matrix, cache, name):
         parameters["vertex_normals"] = normals.astype(np.float32).ravel()
     if uvs is not None:
         uvs = (np.c_[uvs, np.ones(len(uvs))] @ transform.T)[:, :2]
-        uvs[:, 1] = 1.0 - uvs[:, 1]  # Mitsuba's v runs up, and its bitmaps start at the top
         parameters["vertex_texcoords"] = uvs.astype(np.float32).ravel()
     if np.linalg.det(matrix[:3, :3]) < 0:
         indices = indices[:, ::-1]
@@ -241,7 +236,7 @@ def main():
 
     with tempfile.TemporaryDirectory() as folder:
         scene_file, ours_file = f"{folder}/scene.glb", f"{folder}/ours.exr"
-        without_normal_maps(arguments.scene, scene_file)
+        simplified(arguments.scene, scene_file)
         command = [arguments.program, "reference", scene_file, "-o", ours_file, "--size",
                    "x".join(str(FINER * n) for n in size), "--spp", str(max(arguments.spp // FINER ** 2, 1)), "--quiet"]
         subprocess.run(command + (["--camera", arguments.camera] if arguments.camera else []), check=True)

@@ -9,7 +9,7 @@
 //   in   inDepth        m; 0 on sky
 //   in   rsm            all lights' maps below one another
 //   in   lights         LightParams
-//   in   pattern        sampleCount x (cos a, sin a, 1 / (S pdf), r^2) in the unit disk
+//   in   pattern        sampleCount x (cos a, sin a, 1 / (S pdf), r^2 before its shift: s / S) in the unit disk
 //   in   noise          three planes of 64 x 64: shift of r^2 [0; 1), cosine and sine of a turn; repeats
 //   out  outIrradiance  lx, >= 0, finite; 0 on sky
 //   Work 2D, one item per LANES pixels of a row, any local size; items past the edge return.
@@ -33,7 +33,7 @@ __kernel void rsm_gather(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm
     vfloat3 positionWs = positionFromDepth(&params.cameraRays, px.x + laneIndex(), (vint)(px.y), depth);
     float size = (float)params.rsmSizePx;
 
-    vfloat shift = 0.0f, cosTurn = 1.0f, sinTurn = 0.0f;
+    vfloat shift = 0.5f / (float)params.sampleCount, cosTurn = 1.0f, sinTurn = 0.0f;
     if (params.rotates) {
         __global const float* from = noise + (px.y % ROTATION_NOISE_SIZE_PX) * ROTATION_NOISE_SIZE_PX +
                                      px.x % ROTATION_NOISE_SIZE_PX;

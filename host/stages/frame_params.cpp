@@ -88,7 +88,7 @@ std::vector<f32x4> makeDiskPattern(int count) {
             if (bits & 1u) inverse += std::ldexp(1.0, -int(place));
         const double angle = 2.0 * std::numbers::pi * inverse;
         pattern[std::size_t(i)] = {float(std::cos(angle)), float(std::sin(angle)), float(std::numbers::pi / count),
-                                   float((i + 0.5) / count)};
+                                   float(double(i) / count)};
     }
     return pattern;
 }

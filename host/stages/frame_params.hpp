@@ -16,7 +16,7 @@ ViewRays makeViewRays(const Camera& camera, Extent extent);
 LightParams makeLightParams(const Light& light, Extent rsmExtent, Extent shadowExtent);
 
 /// `count` Hammersley points in the unit disk, uniform by area: (cos a, sin a, 1 / (count pdf), r^2) with
-/// pdf = 1 / pi.
+/// pdf = 1 / pi; r^2 goes from 0 in steps of 1 / count, and wants a shift.
 std::vector<f32x4> makeDiskPattern(int count);
 
 }  // namespace earthshine

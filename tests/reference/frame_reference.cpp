@@ -118,13 +118,14 @@ PatternMove patternMove(int x, int y) {
         std::ifstream in(EARTHSHINE_DATA_DIR "/noise/blue_noise.pgm", std::ios::binary);
         return std::string(std::istreambuf_iterator<char>(in), {});
     }();
-    const auto fraction = [&](std::size_t tile) {  // 16 bits, the high byte first, at the end of the file
+    const auto rank = [&](std::size_t tile) {  // 16 bits, the high byte first, at the end of the file
         const std::size_t texel = (tile * kSize + std::size_t(y) % kSize) * kSize + std::size_t(x) % kSize;
         const auto* bytes =
             reinterpret_cast<const unsigned char*>(file.data()) + file.size() - 4 * kSize * kSize + 2 * texel;
-        return (256 * bytes[0] + bytes[1] + 0.5) / (kSize * kSize);
+        return 256.0 * bytes[0] + bytes[1];
     };
-    return {fraction(0), fraction(1)};
+    const double turn = (rank(1) + 0.5) / (kSize * kSize);
+    return {(rank(0) + turn) / (kSize * kSize), turn};
 }
 
 glm::dvec3 rsmDisk(const SurfacePoint& x, const std::vector<Vpl>& texels, const Light& light, int size, int count,
@@ -138,7 +139,7 @@ glm::dvec3 rsmDisk(const SurfacePoint& x, const std::vector<Vpl>& texels, const 
     for (int i = 0; i < count; ++i) {
         double mirrored = 0.0, place = 0.5;
         for (int bits = i; bits != 0; bits /= 2, place /= 2) mirrored += place * (bits % 2);
-        const double r = radiusUv * std::sqrt(std::fmod((i + 0.5) / count + move.shift, 1.0));
+        const double r = radiusUv * std::sqrt(std::fmod(double(i) / count + move.shift, 1.0));
         const double angle = 2.0 * std::numbers::pi * (mirrored + move.turn);
         const int px = int(std::floor((centre.x + r * std::cos(angle)) * size));
         const int py = int(std::floor((centre.y + r * std::sin(angle)) * size));

@@ -41,7 +41,8 @@ double texelGeometry(const SurfacePoint& x, const Vpl& p);
 /// sum_p Phi_p / pi G(p, x).
 glm::dvec3 rsmSum(const SurfacePoint& x, const std::vector<Vpl>& texels);
 
-/// How a pixel moves the disk's pattern: r^2 by `shift` (of the unit disk, wrapping), the whole by `turn` of a circle.
+/// How a pixel moves the disk's pattern: r^2, which goes from 0 in equal steps, by `shift` (of the unit disk,
+/// wrapping), the whole by `turn` of a circle. Without noise: half a step, no turn.
 struct PatternMove {
     double shift = 0.0;
     double turn = 0.0;

@@ -57,9 +57,10 @@ Expected expectedOf(const FrameImages& images, const Settings& settings) {
                 reference::directLight(e.points[i], frame.lights[l], frame.lightMaps[l].shadowDepth,
                                        double(settings.shadowBiasTexels), double(settings.shadowSlopeBiasTexels));
             e.sum[i] += reference::rsmSum(e.points[i], texels);
-            e.disk[i] += reference::rsmDisk(
-                e.points[i], texels, frame.lights[l], size, settings.sampleCount, double(settings.radiusUv),
-                settings.rotates ? reference::patternMove(int(i) % width, int(i) / width) : reference::PatternMove());
+            e.disk[i] += reference::rsmDisk(e.points[i], texels, frame.lights[l], size, settings.sampleCount,
+                                            double(settings.radiusUv),
+                                            settings.rotates ? reference::patternMove(int(i) % width, int(i) / width)
+                                                             : reference::PatternMove{0.5 / settings.sampleCount, 0.0});
         }
     }
     return e;

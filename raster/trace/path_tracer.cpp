@@ -224,7 +224,7 @@ struct PathTracer::Impl {
         const Incident incident = light.incident(y.position);
         if (incident.illuminance == glm::vec3(0.0f) || !y.turnTowards(incident.direction)) return glm::vec3(0.0f);
         const float raysPerArea = light.raysPerArea(y.position, y.geometricNormal);
-        if (!(raysPerArea > 0.0f) || (!isSeenByLight && !isLit(y, incident, work))) return glm::vec3(0.0f);
+        if (!(raysPerArea > 0.0f)) return glm::vec3(0.0f);
         scene.shade(hit, y);
         const glm::vec3 d = y.position - x.position;
         const float distance2 = glm::dot(d, d);
@@ -236,7 +236,7 @@ struct PathTracer::Impl {
         if (settings.strategy != Strategy::FromLight)
             density += cosX / kPi * std::abs(glm::dot(y.geometricNormal, w)) / distance2;
         if (settings.strategy != Strategy::FromSurface) density += lights.chance(index) * raysPerArea;
-        if (!(density > 0.0f)) return glm::vec3(0.0f);
+        if (!(density > 0.0f) || (!isSeenByLight && !isLit(y, incident, work))) return glm::vec3(0.0f);
         const float arriving = std::abs(glm::dot(y.geometricNormal, incident.direction));
         return y.albedo * incident.illuminance * (arriving / kPi * cosX * cosY / (distance2 * density));
     }

@@ -33,8 +33,13 @@ Surface::Surface(const Device& device, PixelFormat format, Extent extent) : form
     const std::string what =
         fmt::format("a {} surface of {} x {}", formatName(format), extent.widthPx, extent.heightPx);
     if (impl.tuning.storage == Storage::Planar) {
-        sizeBytes_ = planeFloats * std::size_t(channels) * sizeof(float);
-        memory_ = impl.checked(what, [&] { return cl::Buffer(impl.context, CL_MEM_READ_WRITE, sizeBytes_); });
+        sizeBytes_ = (planeFloats * std::size_t(channels) + 2 * SURFACE_GUARD) * sizeof(float);
+        memory_ = impl.checked(what, [&] {
+            const cl::Buffer buffer(impl.context, CL_MEM_READ_WRITE, sizeBytes_);
+            // Padding and guards are read, if only to be masked: they must be finite.
+            impl.queue.enqueueFillBuffer(buffer, 0.0f, 0, sizeBytes_);
+            return buffer;
+        });
     } else {
         sizeBytes_ = bytesPerPixel(format) * std::size_t(extent.widthPx) * std::size_t(extent.heightPx);
         memory_ = impl.checked(what, [&] {

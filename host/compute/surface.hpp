@@ -8,7 +8,7 @@
 namespace earthshine {
 
 /// One or three numbers a pixel in the device's storage: an image of the format, or 32-bit float planes whatever the
-/// format. Shared by copies. Contents are undefined at birth.
+/// format, between two guards of SURFACE_GUARD floats. Shared by copies. Planes are 0 at birth, an image is undefined.
 class Surface {
 public:
     Surface() = default;

@@ -8,6 +8,10 @@
 namespace earthshine {
 #endif
 
+// Floats before the first and after the last plane, so that a load that leaves its row by this much still reads memory
+// of the surface: neighbours' pixels or zeros, which the kernel masks.
+#define SURFACE_GUARD 512
+
 typedef struct SurfaceLayout {
     i32 widthPx;
     i32 heightPx;

@@ -105,10 +105,10 @@ TEST(SurfaceLimits, RowsArePaddedAndOffsetsFit32Bits) {
     const Device device(variant.caps, variant.options);
     const Surface one(device, PixelFormat::R32F, {17, 3}), three(device, PixelFormat::RGBA16F, {16, 3});
     EXPECT_EQ(one.layout().pitch, 32);
-    EXPECT_EQ(one.sizeBytes(), 32u * 3u * 4u);
+    EXPECT_EQ(one.sizeBytes(), (32u * 3u + 2u * SURFACE_GUARD) * 4u);
     EXPECT_EQ(three.layout().pitch, 16);
     EXPECT_EQ(three.layout().planeStride, 48);
-    EXPECT_EQ(three.sizeBytes(), 3u * 48u * 4u);
+    EXPECT_EQ(three.sizeBytes(), (3u * 48u + 2u * SURFACE_GUARD) * 4u);
     EXPECT_TRUE(Surface().empty());
     EXPECT_THAT(test::thrown<DeviceError>([&] {
                     Surface(device, PixelFormat::R32F, {65536, 65536});

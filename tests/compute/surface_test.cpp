@@ -44,6 +44,17 @@ Pixels flipped(Pixels pixels) {
     return result;
 }
 
+// What lies `by` pixels to the right, 0 beyond the row's ends.
+Pixels shifted(Pixels pixels, int by) {
+    Pixels result = pixels;
+    const Extent e = pixels.extent;
+    for (int y = 0; y < e.heightPx; ++y)
+        for (int x = 0; x < e.widthPx; ++x)
+            for (int c = 0; c < pixels.channels; ++c)
+                result.at(x, y, c) = x + by >= 0 && x + by < e.widthPx ? pixels.at(x + by, y, c) : 0.0f;
+    return result;
+}
+
 class Surfaces : public testing::TestWithParam<reference::Variant> {
 protected:
     bool isPlanar() const { return device_.tuning().storage == Storage::Planar; }
@@ -57,7 +68,7 @@ protected:
             for (int c = 0; c < pixels.channels; ++c)
                 for (int y = 0; y < e.heightPx; ++y)
                     for (int x = 0; x < e.widthPx; ++x)
-                        planes[std::size_t(c * l.planeStride + y * l.pitch + x)] = pixels.at(x, y, c);
+                        planes[std::size_t(SURFACE_GUARD + c * l.planeStride + y * l.pitch + x)] = pixels.at(x, y, c);
             impl.queue.enqueueWriteBuffer(cl::Buffer(surface.memory()(), true), CL_TRUE, 0, surface.sizeBytes(),
                                           planes.data());
             return;
@@ -83,7 +94,7 @@ protected:
             for (int c = 0; c < pixels.channels; ++c)
                 for (int y = 0; y < e.heightPx; ++y)
                     for (int x = 0; x < e.widthPx; ++x)
-                        pixels.at(x, y, c) = planes[std::size_t(c * l.planeStride + y * l.pitch + x)];
+                        pixels.at(x, y, c) = planes[std::size_t(SURFACE_GUARD + c * l.planeStride + y * l.pitch + x)];
             return pixels;
         }
         HostImage image(surface.format(), e);
@@ -131,6 +142,26 @@ TEST_P(Surfaces, LoadsStoresAndGathersHitTheirPixel) {
     }
 }
 
+// A row read from beside it: lanes on the row hold its pixels, whatever lies around it.
+TEST_P(Surfaces, LoadsFromBesideARowHitItsPixels) {
+    Kernel shift(device_, "surface_shift");
+    for (const Extent extent : kExtents) {
+        const Pixels one = randomPixels(extent, 1, 1), three = randomPixels(extent, 3, 2);
+        const Surface inOne(device_, PixelFormat::R32F, extent), inThree(device_, PixelFormat::RGBA32F, extent);
+        const Surface outOne(device_, PixelFormat::R32F, extent), outThree(device_, PixelFormat::RGBA32F, extent);
+        write(inOne, one);
+        write(inThree, three);
+        shift.set("inOne", inOne).set("inThree", inThree).set("outOne", outOne).set("outThree", outThree);
+        for (const int by : {-(SURFACE_GUARD - 16), -17, -1, 3, SURFACE_GUARD - 16}) {
+            SCOPED_TRACE(testing::Message() << extent.widthPx << " x " << extent.heightPx << ", shifted by " << by);
+            shift.setParams("shiftPx", by);
+            shift.enqueue(extent);
+            ASSERT_EQ(read(outOne).values, shifted(one, by).values);
+            ASSERT_EQ(read(outThree).values, shifted(three, by).values);
+        }
+    }
+}
+
 // Planes in the middle of a larger buffer, far from one another: what lies between must stay.
 TEST_P(Surfaces, NothingIsWrittenOutside) {
     if (!isPlanar()) return;  // an image has no outside: OpenCL drops such writes
@@ -144,7 +175,7 @@ TEST_P(Surfaces, NothingIsWrittenOutside) {
         const int pitch = inOne.layout().pitch, plane = pitch * extent.heightPx;
         constexpr int kGuard = 1024;  // 4096 bytes: as much as any device wants a sub-buffer aligned to
         constexpr float kUntouched = -12345.0f;
-        const auto size = std::size_t(3 * plane + 4 * kGuard);
+        const auto size = std::size_t(3 * plane + 4 * kGuard + 2 * SURFACE_GUARD);
         const std::vector<float> before(size, kUntouched);
         const cl::Buffer one = test::upload(device_, before), three = test::upload(device_, before);
         const auto inside = [&](cl::Buffer buffer) {
@@ -162,7 +193,7 @@ TEST_P(Surfaces, NothingIsWrittenOutside) {
             const std::vector<float> after = test::download<float>(device_, buffer, size);
             std::size_t written = 0;
             for (std::size_t i = 0; i < size; ++i) {
-                const auto offset = int(i) - kGuard;
+                const auto offset = int(i) - kGuard - SURFACE_GUARD;
                 const bool isInside =
                     offset >= 0 && offset / (plane + kGuard) < planes && offset % (plane + kGuard) < plane;
                 if (!isInside) {

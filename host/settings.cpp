@@ -9,6 +9,32 @@
 
 namespace earthshine {
 
+Settings settingsOf(Preset preset) {
+    Settings s;
+    if (preset == Preset::Still) return s;
+    s.sampleCount = 8;
+    s.accumulates = true;
+    s.filterIterations = 5;
+    if (preset == Preset::Baseline) {
+        s.radiusUv = 0.2f;
+        s.historyFrames = 20;
+        s.antiLag = 0.0f;
+        s.filterWeights = FilterWeights::Depth;
+        s.filterDepth = 0.2f;
+        s.filterNormal = 0.3f;
+        return s;
+    }
+    s.filterFade = 8.0f;
+    if (preset == Preset::Fast) {
+        s.sampleCount = 4;
+        s.filterIterations = 4;
+    } else if (preset == Preset::High) {
+        s.sampleCount = 16;
+        s.historyFrames = 64;
+    }
+    return s;
+}
+
 void validate(const Settings& settings) {
     forEachSetting(settings, [](const SettingInfo& info, const auto& value) {
         using Value = std::remove_cvref_t<decltype(value)>;
@@ -20,6 +46,9 @@ void validate(const Settings& settings) {
                                              *info.unit ? " " : "", info.unit));
         }
     });
+    if (settings.feedback > settings.filterIterations)
+        throw UsageError(fmt::format("feedback: history cannot remember iteration {} of {} (filter)", settings.feedback,
+                                     settings.filterIterations));
 }
 
 }  // namespace earthshine

@@ -32,6 +32,19 @@ struct Device::Impl {
         return clChecked(what, caps.name, body);
     }
     cl::Buffer makeBuffer(std::size_t bytes, cl_mem_flags flags = CL_MEM_READ_WRITE);
+    /// A table that kernels read; waits until it is there.
+    template <class Element>
+    cl::Buffer upload(const std::vector<Element>& elements) {
+        const std::size_t bytes = elements.size() * sizeof(Element);
+        cl::Buffer buffer = makeBuffer(bytes);
+        checked("writing a table",
+                [&] { return queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, elements.data()); });
+        return buffer;
+    }
+    /// Waits for all that was enqueued.
+    void finish() {
+        checked("waiting for the frame", [&] { return queue.finish(); });
+    }
 };
 
 }  // namespace earthshine

@@ -9,7 +9,8 @@ namespace earthshine {
 
 /// Surfaces of the G-buffer and of all lights' maps; what frame.hpp says of each image holds here.
 struct FrameSurfaces {
-    Surface albedo, normalWs, depth, emission;  ///< emission may be empty
+    Surface albedo, normalWs, depth;
+    Surface motion, emission;  ///< may be empty
     RsmView rsm;
     Surface shadowDepth;
     Extent shadowExtent;  ///< of one light's map

@@ -141,12 +141,16 @@ void HostTransport::enqueue(const FrameInputs& frame, FrameSurfaces& out) {
     enqueueImage(frame.gbuffer.albedo, out.albedo, 0);
     enqueueImage(frame.gbuffer.normalWs, out.normalWs, 0);
     enqueueImage(frame.gbuffer.depth, out.depth, 0);
-    if (frame.gbuffer.emission.empty()) {
-        out.emission = {};
-    } else {
-        ensure(device_, out.emission, PixelFormat::RGBA16F, extent);
-        enqueueImage(frame.gbuffer.emission, out.emission, 0);
-    }
+    const auto enqueueOptional = [&](const ImageView& image, Surface& surface) {
+        if (image.empty()) {
+            surface = {};
+            return;
+        }
+        ensure(device_, surface, PixelFormat::RGBA16F, extent);
+        enqueueImage(image, surface, 0);
+    };
+    enqueueOptional(frame.gbuffer.emission, out.emission);
+    enqueueOptional(frame.gbuffer.motion, out.motion);
 
     const Extent rsmAtlas{rsm.widthPx, rsm.heightPx * mapCount};
     ensure(device_, out.rsm.depth, PixelFormat::R32F, rsmAtlas);

@@ -1,6 +1,71 @@
 #include "pipeline/make_params.hpp"
 
+#include <cmath>
+
 namespace earthshine {
+
+namespace {
+
+float lengthOf(const f32x4& v) {
+    return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+TemporalParams temporalParams(const Settings& settings, const FrameGeometry& frame) {
+    // How far off its plane a surface may be found again: depths of 32 bits and motion of 16 are that wrong, and curved
+    // surfaces that flat, from one pixel to the next.
+    constexpr float kPlaneTolerance = 0.01f;  // of the distance
+    constexpr float kMinNormalCosine = 0.8f;
+    TemporalParams p{};
+    p.previousRays = frame.previousRays;
+    p.hasHistory = settings.accumulates && frame.hasHistory ? 1 : 0;
+    p.usesConfidence = settings.antiLag > 0.0f && frame.hasConfidence ? 1 : 0;
+    p.maxFrames = float(settings.historyFrames);
+    p.planeTolerance = kPlaneTolerance;
+    p.minNormalCosine = kMinNormalCosine;
+    p.fireflyFactor = settings.fireflyFactor;
+    return p;
+}
+
+// The passes of all iterations in order: one each, or a row and a column.
+std::vector<AtrousParams> filterPasses(const Settings& settings, const FrameGeometry& frame) {
+    std::vector<AtrousParams> passes;
+    for (int i = 0; i < settings.filterIterations; ++i) {
+        AtrousParams p{};
+        p.cameraRays = frame.cameraRays;
+        p.stepPx = 1 << i;
+        p.weights = settings.filterWeights == FilterWeights::Plane ? ATROUS_WEIGHTS_PLANE : ATROUS_WEIGHTS_DEPTH;
+        p.depthTolerance = settings.filterDepth;
+        p.normalTolerance = settings.filterNormal;
+        // Each iteration leaves less noise: a fourth of the variance, or so.
+        p.luminanceTolerance = std::ldexp(settings.filterLuminance, -i);
+        p.fadeFrames = settings.filterFade;
+        p.footprintM = lengthOf(frame.cameraRays.originDx);
+        p.footprintPerM = lengthOf(frame.cameraRays.rayDx);
+        if (settings.filterKernel == FilterKernel::Square3x3) {
+            p.kernel0 = 1.0f / 2.0f;
+            p.kernel1 = 1.0f / 4.0f;
+            p.radiusX = p.radiusY = 1;
+            passes.push_back(p);
+            continue;
+        }
+        p.kernel0 = 3.0f / 8.0f;
+        p.kernel1 = 1.0f / 4.0f;
+        p.kernel2 = 1.0f / 16.0f;
+        p.radiusX = p.radiusY = 2;
+        if (settings.filterKernel == FilterKernel::Square5x5) {
+            passes.push_back(p);
+            continue;
+        }
+        p.radiusY = 0;
+        passes.push_back(p);
+        p.radiusX = 0;
+        p.radiusY = 2;
+        passes.push_back(p);
+    }
+    return passes;
+}
+
+}  // namespace
 
 FrameParams makeParams(const Settings& settings, const FrameGeometry& frame) {
     constexpr float kMiddleGrey = 0.18f;  // what photographers and displays take for the middle
@@ -15,6 +80,14 @@ FrameParams makeParams(const Settings& settings, const FrameGeometry& frame) {
     p.sum.cameraRays = frame.cameraRays;
     p.sum.rsmSizePx = frame.rsmSizePx;
     p.sum.lightCount = frame.lightCount;
+    p.accumulates = settings.accumulates;
+    p.denoises = settings.accumulates || settings.filterIterations > 0;
+    p.temporal = temporalParams(settings, frame);
+    p.checksHistory = settings.accumulates && settings.antiLag > 0.0f;
+    p.historyCheck.droppedAbove = settings.antiLag;
+    p.historyCheck.keptBelow = 0.5f * settings.antiLag;
+    p.filterPasses = filterPasses(settings, frame);
+    p.feedbackPasses = settings.feedback * (settings.filterKernel == FilterKernel::Separable ? 2 : 1);
     p.directLight.cameraRays = frame.cameraRays;
     p.directLight.lightCount = frame.lightCount;
     p.directLight.shadowWidthPx = frame.shadowExtent.widthPx;

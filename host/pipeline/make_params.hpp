@@ -3,12 +3,15 @@
 
 #include <vector>
 
+#include "atrous_params.h"
 #include "direct_light_params.h"
 #include "earthshine/image.hpp"
 #include "earthshine/settings.hpp"
 #include "exposure_params.h"
+#include "history_check_params.h"
 #include "rsm_gather_params.h"
 #include "rsm_sum_params.h"
+#include "temporal_params.h"
 #include "tone_map_params.h"
 
 namespace earthshine {
@@ -19,13 +22,23 @@ struct FrameGeometry {
     int rsmSizePx = 0;
     int lightCount = 0;
     Extent shadowExtent;
+    ViewRays previousRays{};     ///< of the previous frame's camera
+    bool hasHistory = false;     ///< a previous frame of the same extent left its history
+    bool hasConfidence = false;  ///< and had it checked
 };
 
 /// The parameters of every stage of a frame.
 struct FrameParams {
     Estimator estimator = Estimator::Disk;
     RsmGatherParams gather{};
-    RsmSumParams sum{};  ///< firstRowPx is each launch's own
+    RsmSumParams sum{};         ///< firstRowPx is each launch's own
+    bool denoises = false;      ///< temporal runs: it also readies a single frame for the filter
+    bool accumulates = false;   ///< and its output is kept for the next frame
+    TemporalParams temporal{};  ///< hasMotion is the stage's own
+    bool checksHistory = false;
+    HistoryCheckParams historyCheck{};
+    std::vector<AtrousParams> filterPasses;  ///< in order
+    int feedbackPasses = 0;                  ///< history remembers the output of this many of them
     DirectLightParams directLight{};
     ExposureParams exposure{};
     ToneMapParams toneMap{};

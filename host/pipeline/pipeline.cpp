@@ -4,19 +4,17 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "earthshine/error.hpp"
 #include "interop/host_transport.hpp"
+#include "pipeline/indirect_pass.hpp"
 #include "pipeline/make_params.hpp"
-#include "stages/blue_noise.hpp"
 #include "stages/direct_light_stage.hpp"
 #include "stages/exposure_stage.hpp"
 #include "stages/frame_params.hpp"
 #include "stages/interleave_stage.hpp"
 #include "stages/modulate_stage.hpp"
-#include "stages/rsm_gather_stage.hpp"
-#include "stages/rsm_pack_stage.hpp"
-#include "stages/rsm_sum_stage.hpp"
 #include "stages/tone_map_stage.hpp"
 
 namespace earthshine {
@@ -25,24 +23,19 @@ struct Pipeline::Impl {
     explicit Impl(const Device& d)
         : device(d),
           transport(d),
-          rsmPack(d),
-          rsmGather(d),
-          rsmSum(d),
+          indirect(d),
           directLight(d),
           modulate(d),
           exposureStage(d),
           toneMap(d),
           interleave(d),
           exposure(d.impl().makeBuffer(sizeof(float))) {
-        uploadNoise();
         checkFormats();
     }
 
     Device device;
     HostTransport transport;
-    RsmPackStage rsmPack;
-    RsmGatherStage rsmGather;
-    RsmSumStage rsmSum;
+    IndirectPass indirect;
     DirectLightStage directLight;
     ModulateStage modulate;
     ExposureStage exposureStage;
@@ -50,12 +43,12 @@ struct Pipeline::Impl {
     InterleaveStage interleave;
 
     FrameInputs frame;
-    FrameSurfaces inputs;
+    FrameSurfaces inputs, previous;  ///< of `previous` only normal and depth are kept
+    ViewRays previousRays{};
     Extent extent;
-    Surface directIrradiance, indirectIrradiance, direct, color;
+    Surface directIrradiance, direct, color;
     Surface scratch;  ///< allocated by the first read that needs it
-    cl::Buffer exposure, display, pixels, pattern, noise;
-    int patternSize = 0;
+    cl::Buffer exposure, display, pixels;
     FrameParams params;
     bool hasFrame = false, hasRun = false;
     std::vector<StageTime> times;
@@ -64,7 +57,7 @@ struct Pipeline::Impl {
         const Extent wanted = inputs.depth.extent();
         if (extent == wanted) return;
         extent = {};  // what throws halfway is allocated again by the next run
-        for (Surface* surface : {&directIrradiance, &indirectIrradiance, &direct, &color})
+        for (Surface* surface : {&directIrradiance, &direct, &color})
             *surface = Surface(device, PixelFormat::RGBA32F, wanted);
         scratch = {};
         const std::size_t count = std::size_t(wanted.widthPx) * std::size_t(wanted.heightPx);
@@ -105,46 +98,6 @@ struct Pipeline::Impl {
         return scratch;
     }
 
-    void uploadNoise() {
-        const std::vector<float> planes = makeRotationNoise();
-        noise = device.impl().makeBuffer(planes.size() * sizeof(float));
-        write(noise, planes.data(), planes.size() * sizeof(float));
-    }
-
-    void write(const cl::Buffer& buffer, const void* data, std::size_t bytes) {
-        Device::Impl& impl = device.impl();
-        impl.checked("writing a table", [&] { return impl.queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, data); });
-    }
-
-    void uploadPattern(int count) {
-        if (patternSize == count) return;
-        const std::vector<f32x4> points = makeDiskPattern(count);
-        pattern = device.impl().makeBuffer(points.size() * sizeof(f32x4));
-        write(pattern, points.data(), points.size() * sizeof(f32x4));
-        patternSize = count;
-    }
-
-    // Bands of whole groups of rows, of about this many pairs of pixel and texel: some tenths of a second on two CPU
-    // cores, so that progress shows and a GPU's display stays alive.
-    void sumInBands(const std::function<void(double)>& progress) {
-        constexpr double kPairsPerLaunch = 5e8;
-        const int groupRows = device.tuning().localSizePx[1];
-        const double pairsPerRow =
-            double(extent.widthPx) * inputs.rsm.sizePx * double(inputs.rsm.sizePx) * std::max(inputs.rsm.lightCount, 1);
-        const int rows =
-            std::max(int(std::min(kPairsPerLaunch / pairsPerRow, double(extent.heightPx))) / groupRows, 1) * groupRows;
-        for (int first = 0; first < extent.heightPx; first += rows) {
-            RsmSumParams band = params.sum;
-            band.firstRowPx = first;
-            rsmSum.enqueue({inputs.normalWs, inputs.depth, inputs.rsm, inputs.lights, indirectIrradiance}, band,
-                           std::min(rows, extent.heightPx - first));
-            if (progress) {
-                finish();
-                progress(double(std::min(first + rows, extent.heightPx)) / extent.heightPx);
-            }
-        }
-    }
-
     // While the device reads the caller's memory in place, nothing may leave before the queue is done with it.
     class Borrowing {
     public:
@@ -162,11 +115,6 @@ struct Pipeline::Impl {
     private:
         Impl& owner_;
     };
-
-    void finish() {
-        Device::Impl& impl = device.impl();
-        impl.checked("waiting for the frame", [&] { return impl.queue.finish(); });
-    }
 
     void collectTimes() {
         times.clear();
@@ -224,36 +172,37 @@ void Pipeline::run(const Settings& settings, const std::function<void(double)>& 
     Impl& p = *impl_;
     if (!p.hasFrame) throw UsageError("pipeline: setFrame() comes before run()");
     p.device.impl().launches.clear();
-    p.hasRun = false;
+    // What throws halfway leaves no history.
+    const bool hadRun = std::exchange(p.hasRun, false);
+    if (!hadRun) p.indirect.forget();
 
     const Impl::Borrowing borrowing(p);
+    std::swap(p.inputs.normalWs, p.previous.normalWs);
+    std::swap(p.inputs.depth, p.previous.depth);
     p.transport.enqueue(p.frame, p.inputs);
     p.allocate();
-    p.params = makeParams(settings, {makeViewRays(p.frame.camera, p.extent), p.inputs.rsm.sizePx,
-                                     p.inputs.rsm.lightCount, p.inputs.shadowExtent});
-    if (p.device.tuning().rsmRecords && p.inputs.rsm.lightCount > 0) p.rsmPack.enqueue(p.inputs.rsm, p.inputs.lights);
-
+    const ViewRays rays = makeViewRays(p.frame.camera, p.extent);
+    p.params = makeParams(settings, {rays, p.inputs.rsm.sizePx, p.inputs.rsm.lightCount, p.inputs.shadowExtent,
+                                     p.previousRays, p.indirect.hasHistory(p.extent), p.indirect.hasConfidence()});
+    p.previousRays = rays;
     p.directLight.enqueue(
         {p.inputs.normalWs, p.inputs.depth, p.inputs.shadowDepth, p.inputs.lights, p.directIrradiance},
         p.params.directLight);
-    if (p.params.estimator == Estimator::Sum) {
-        p.sumInBands(progress);
-    } else {
-        p.uploadPattern(p.params.gather.sampleCount);
-        p.rsmGather.enqueue({p.inputs.normalWs, p.inputs.depth, p.inputs.rsm, p.inputs.lights, p.pattern, p.noise,
-                             p.indirectIrradiance},
-                            p.params.gather);
-    }
+    p.indirect.enqueue(p.inputs, p.previous, p.params, progress);
     p.modulate.enqueue(
         {p.inputs.albedo, p.directIrradiance, p.inputs.emission.empty() ? nullptr : &p.inputs.emission, p.direct});
-    p.modulate.enqueue({p.inputs.albedo, p.indirectIrradiance, &p.direct, p.color});
+    p.modulate.enqueue({p.inputs.albedo, p.indirect.irradiance(), &p.direct, p.color});
     p.exposureStage.enqueue({p.color, p.inputs.depth, p.exposure}, p.params.exposure);
     p.toneMap.enqueue({p.color, p.exposure, p.display}, p.params.toneMap);
 
-    p.finish();
+    p.device.impl().finish();
     p.collectTimes();
     p.hasRun = true;
     if (progress) progress(1.0);
+}
+
+void Pipeline::forgetHistory() {
+    impl_->indirect.forget();
 }
 
 HostImage Pipeline::read(Output output) {
@@ -263,7 +212,7 @@ HostImage Pipeline::read(Output output) {
         case Output::DirectIrradiance:
             return p.readSurface(p.directIrradiance);
         case Output::IndirectIrradiance:
-            return p.readSurface(p.indirectIrradiance);
+            return p.readSurface(p.indirect.irradiance());
         case Output::Direct:
             return p.readSurface(p.direct);
         case Output::Color:
@@ -273,7 +222,7 @@ HostImage Pipeline::read(Output output) {
         case Output::Indirect:
             break;
     }
-    p.modulate.enqueue({p.inputs.albedo, p.indirectIrradiance, nullptr, p.scratchSurface()});
+    p.modulate.enqueue({p.inputs.albedo, p.indirect.irradiance(), nullptr, p.scratchSurface()});
     return p.readSurface(p.scratch);
 }
 

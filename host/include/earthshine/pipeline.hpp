@@ -49,6 +49,10 @@ public:
     /// Throws UsageError for settings out of range, DeviceError if the device fails.
     void run(const Settings& settings, const std::function<void(double)>& progress = {});
 
+    /// The next run() begins anew: after a cut, when nothing of the previous frame is of use. Without it, a run that
+    /// accumulates takes the frame before as what its motion vectors point to.
+    void forgetHistory();
+
     /// Copies an output of the last run to the host.
     HostImage read(Output output);
 

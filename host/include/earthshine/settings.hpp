@@ -14,6 +14,21 @@ enum class Estimator {
 };
 inline constexpr const char* kEstimatorNames[] = {"disk", "sum"};
 
+/// How one iteration of the spatial filter lays its taps.
+enum class FilterKernel {
+    Separable,  ///< five in a row, then five in a column: ten reads; edges that run aslant are kept less well
+    Square3x3,  ///< nine at once
+    Square5x5,  ///< twenty-five at once
+};
+inline constexpr const char* kFilterKernelNames[] = {"separable", "3x3", "5x5"};
+
+/// What tells the filter that a tap lies on another surface (kernels/atrous.cl).
+enum class FilterWeights {
+    Plane,  ///< its distance from the pixel's plane, against its distance along it: no matter the scene's scale
+    Depth,  ///< its depth, against metres a step: the field's usual way, for comparison
+};
+inline constexpr const char* kFilterWeightsNames[] = {"plane", "depth"};
+
 /// From scene-linear radiance to a display.
 enum class ToneCurve {
     Filmic,  ///< the ACES curve as fitted by Narkowicz 2015, then sRGB
@@ -27,8 +42,24 @@ struct Settings {
     float radiusUv = 1.4143f;               ///< (0; 2] (fraction of the RSM's side) - disk: radius; sqrt(2) covers the
                                             ///< map from anywhere, less gives up energy for less noise
     bool rotates = true;                    ///< disk: blue noise turns the pattern at each pixel; off: bands, no noise
-    float shadowBiasTexels = 0.5f;          ///< [0; 16] (shadow map texels) - depth bias, constant part
-    float shadowSlopeBiasTexels = 1.5f;     ///< [0; 16] (shadow map texels) - depth bias a unit of slope
+    bool accumulates = false;               ///< frames are averaged over time, along motion vectors
+    int historyFrames = 32;                 ///< [1; 1024] (frames) - accumulate: what history is worth at most
+    float antiLag = 16.0f;       ///< [0; 256] - accumulate: history is dropped where the light changed by more than
+                                 ///< sqrt of this times the tile's noise; 0 = never
+    float fireflyFactor = 0.0f;  ///< [0; 1000] - accumulate: a pixel may be this much brighter than all around it and
+                                 ///< its history; 0 = as bright as it is
+    int filterIterations = 0;    ///< [0; 7] - iterations of the spatial filter, each with twice the step; 0 = none
+    FilterKernel filterKernel = FilterKernel::Separable;
+    FilterWeights filterWeights = FilterWeights::Plane;
+    float filterDepth = 0.25f;      ///< [0.001; 1000] - plane: m off the plane a m aside; depth: m a step
+    float filterNormal = 0.3f;      ///< [0.001; 1000] - squared difference of unit normals at which a tap counts for
+                                    ///< nothing (plane) or 1/e (depth)
+    float filterLuminance = 0.0f;   ///< [0; 1000] (standard deviations) - plane: luminance difference at which a tap
+                                    ///< counts for nothing; 0 = any
+    float filterFade = 1024.0f;     ///< [1; 1024] (frames) - history longer than this weakens the filter in proportion
+    int feedback = 0;               ///< [0; 7] - accumulate: history remembers what this many filter iterations make
+    float shadowBiasTexels = 0.5f;  ///< [0; 16] (shadow map texels) - depth bias, constant part
+    float shadowSlopeBiasTexels = 1.5f;  ///< [0; 16] (shadow map texels) - depth bias a unit of slope
     ToneCurve toneCurve = ToneCurve::Filmic;
     bool autoExposure = true;    ///< the log-average luminance of the picture becomes mid-grey (0.18)
     float exposureStops = 0.0f;  ///< [-32; 32] (stops) - times 2^x, on top of automatic exposure if that is on
@@ -56,6 +87,34 @@ void forEachSetting(SettingsT& s, Visitor&& visit) {
     visit(SettingInfo{"rotate", "", 0, 1,
                       "disk: blue noise turns the pattern at each pixel; off: bands instead of noise"},
           s.rotates);
+    visit(SettingInfo{"accumulate", "", 0, 1, "average frames over time, along motion vectors"}, s.accumulates);
+    visit(SettingInfo{"history", "frames", 1, 1024, "accumulate: what history is worth at most"}, s.historyFrames);
+    visit(
+        SettingInfo{"anti-lag", "", 0, 256,
+                    "accumulate: drop history where light changed by more than the root of this times a tile's noise; "
+                    "0 = never"},
+        s.antiLag);
+    visit(SettingInfo{"firefly", "", 0, 1000,
+                      "accumulate: a pixel may be this much brighter than its neighbours and history; 0 = no limit"},
+          s.fireflyFactor);
+    visit(SettingInfo{"filter", "iterations", 0, 7, "spatial filter: iterations, each with twice the step; 0 = none"},
+          s.filterIterations);
+    visit(SettingInfo{"filter-kernel", "", 0, 2, "filter: taps of one iteration", kFilterKernelNames}, s.filterKernel);
+    visit(SettingInfo{"filter-weights", "", 0, 1, "filter: what tells surfaces apart", kFilterWeightsNames},
+          s.filterWeights);
+    visit(SettingInfo{"filter-depth", "", 0.001, 1000,
+                      "filter: tolerance; plane: m off the surface a m along it, depth: m a step"},
+          s.filterDepth);
+    visit(SettingInfo{"filter-normal", "", 0.001, 1000, "filter: tolerated squared difference of unit normals"},
+          s.filterNormal);
+    visit(SettingInfo{"filter-luminance", "standard deviations", 0, 1000,
+                      "filter, plane: tolerated difference of luminance; 0 = any"},
+          s.filterLuminance);
+    visit(SettingInfo{"filter-fade", "frames", 1, 1024, "filter: history longer than this weakens it in proportion"},
+          s.filterFade);
+    visit(SettingInfo{"feedback", "iterations", 0, 7,
+                      "accumulate: history remembers what this many filter iterations make"},
+          s.feedback);
     visit(SettingInfo{"shadow-bias", "shadow map texels", 0, 16, "constant depth bias of the shadow test"},
           s.shadowBiasTexels);
     visit(SettingInfo{"shadow-slope-bias", "shadow map texels", 0, 16, "depth bias for each unit of slope"},
@@ -66,6 +125,18 @@ void forEachSetting(SettingsT& s, Visitor&& visit) {
     visit(SettingInfo{"exposure", "stops", -32, 32, "brighter by 2^x, on top of automatic exposure if that is on"},
           s.exposureStops);
 }
+
+/// Settings that go together; what a caller changes afterwards stays changed.
+enum class Preset {
+    Still,     ///< Settings(): one picture from many samples, no denoiser
+    Fast,      ///< the least work that looks clean in motion
+    Balanced,  ///< 8 samples, history and filter
+    High,      ///< more samples, a narrower filter
+    Baseline,  ///< the published technique's numbers (8 samples of a disk of 0.2, metres for depth, five iterations
+               ///< whatever the history), to measure the others against
+};
+inline constexpr const char* kPresetNames[] = {"still", "fast", "balanced", "high", "baseline"};
+Settings settingsOf(Preset preset);
 
 /// Throws UsageError naming the first setting that is out of its range or not a number.
 void validate(const Settings& settings);

@@ -1,0 +1,123 @@
+#include "pipeline/indirect_pass.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "stages/blue_noise.hpp"
+#include "stages/frame_params.hpp"
+
+namespace earthshine {
+
+namespace {
+
+void ensure(const Device& device, Surface& surface, PixelFormat format, Extent extent) {
+    if (surface.extent() != extent) surface = Surface(device, format, extent);
+}
+
+}  // namespace
+
+IndirectPass::IndirectPass(const Device& device)
+    : device_(device),
+      rsmPack_(device),
+      rsmGather_(device),
+      rsmSum_(device),
+      temporal_(device),
+      historyCheck_(device),
+      atrous_(device),
+      noise_(device.impl().upload(makeRotationNoise())),
+      confidence_(device.impl().makeBuffer(sizeof(float))) {}
+
+void IndirectPass::allocate(Extent extent, const FrameParams& params) {
+    if (sampled_.extent() != extent) {
+        forget();
+        ensure(device_, sampled_, PixelFormat::RGBA32F, extent);
+        const Extent tiles = HistoryCheckStage::tiles(extent);
+        confidence_ =
+            device_.impl().makeBuffer(sizeof(float) * std::size_t(tiles.widthPx) * std::size_t(tiles.heightPx));
+    }
+    if (!params.denoises) return;
+    for (HistorySurfaces* h : {&history_, &next_}) {
+        ensure(device_, h->irradiance, PixelFormat::RGBA32F, extent);
+        ensure(device_, h->length, PixelFormat::R32F, extent);
+        ensure(device_, h->moment, PixelFormat::R32F, extent);
+    }
+    if (params.feedbackPasses > 0) ensure(device_, accumulated_, PixelFormat::RGBA32F, extent);
+    if (!params.filterPasses.empty())
+        for (Surface& surface : filtered_) ensure(device_, surface, PixelFormat::RGBA32F, extent);
+}
+
+void IndirectPass::uploadPattern(int count) {
+    if (patternSize_ == count) return;
+    pattern_ = device_.impl().upload(makeDiskPattern(count));
+    patternSize_ = count;
+}
+
+// Bands of whole groups of rows, of about this many pairs of pixel and texel: some tenths of a second on two CPU
+// cores, so that progress shows and a GPU's display stays alive.
+void IndirectPass::sumInBands(const FrameSurfaces& inputs, const RsmSumParams& params,
+                              const std::function<void(double)>& progress) {
+    constexpr double kPairsPerLaunch = 5e8;
+    const Extent extent = sampled_.extent();
+    const int groupRows = device_.tuning().localSizePx[1];
+    const double pairsPerRow =
+        double(extent.widthPx) * inputs.rsm.sizePx * double(inputs.rsm.sizePx) * std::max(inputs.rsm.lightCount, 1);
+    const int rows =
+        std::max(int(std::min(kPairsPerLaunch / pairsPerRow, double(extent.heightPx))) / groupRows, 1) * groupRows;
+    for (int first = 0; first < extent.heightPx; first += rows) {
+        RsmSumParams band = params;
+        band.firstRowPx = first;
+        rsmSum_.enqueue({inputs.normalWs, inputs.depth, inputs.rsm, inputs.lights, sampled_}, band,
+                        std::min(rows, extent.heightPx - first));
+        if (progress) {
+            device_.impl().finish();
+            progress(double(std::min(first + rows, extent.heightPx)) / extent.heightPx);
+        }
+    }
+}
+
+void IndirectPass::gather(const FrameSurfaces& inputs, const FrameParams& params,
+                          const std::function<void(double)>& progress) {
+    if (device_.tuning().rsmRecords && inputs.rsm.lightCount > 0) rsmPack_.enqueue(inputs.rsm, inputs.lights);
+    if (params.estimator == Estimator::Sum) {
+        sumInBands(inputs, params.sum, progress);
+        return;
+    }
+    uploadPattern(params.gather.sampleCount);
+    rsmGather_.enqueue({inputs.normalWs, inputs.depth, inputs.rsm, inputs.lights, pattern_, noise_, sampled_},
+                       params.gather);
+}
+
+void IndirectPass::denoise(const FrameSurfaces& inputs, const FrameSurfaces& previous, const FrameParams& params) {
+    const Surface& accumulated = params.feedbackPasses > 0 ? accumulated_ : next_.irradiance;
+    temporal_.enqueue({sampled_, inputs.normalWs, inputs.depth, inputs.motion.empty() ? nullptr : &inputs.motion,
+                       hasHistory_ ? previous.normalWs : inputs.normalWs, hasHistory_ ? previous.depth : inputs.depth,
+                       history_, confidence_, accumulated, next_.length, next_.moment},
+                      params.temporal);
+    if (params.checksHistory) historyCheck_.enqueue({sampled_, accumulated, confidence_}, params.historyCheck);
+
+    const Surface* filtered = &accumulated;
+    for (std::size_t pass = 0; pass < params.filterPasses.size(); ++pass) {
+        const bool isRemembered = int(pass) + 1 == params.feedbackPasses;
+        const Surface& out = isRemembered ? next_.irradiance : filtered_[pass % 2];
+        atrous_.enqueue({*filtered, inputs.normalWs, inputs.depth, next_.length, next_.moment, out},
+                        params.filterPasses[pass]);
+        filtered = &out;
+    }
+    irradiance_ = *filtered;
+    std::swap(history_, next_);
+    hasHistory_ = params.accumulates;
+    hasConfidence_ = params.checksHistory;
+}
+
+void IndirectPass::enqueue(const FrameSurfaces& inputs, const FrameSurfaces& previous, const FrameParams& params,
+                           const std::function<void(double)>& progress) {
+    allocate(inputs.depth.extent(), params);
+    gather(inputs, params, progress);
+    irradiance_ = sampled_;
+    if (params.denoises)
+        denoise(inputs, previous, params);
+    else
+        forget();
+}
+
+}  // namespace earthshine

@@ -1,0 +1,62 @@
+#pragma once
+// From RSMs to clean irradiance: gathers, accumulates over time, filters. Owns history.
+
+#include <functional>
+
+#include "interop/frame_surfaces.hpp"
+#include "pipeline/make_params.hpp"
+#include "stages/atrous_stage.hpp"
+#include "stages/history_check_stage.hpp"
+#include "stages/rsm_gather_stage.hpp"
+#include "stages/rsm_pack_stage.hpp"
+#include "stages/rsm_sum_stage.hpp"
+#include "stages/temporal_stage.hpp"
+
+namespace earthshine {
+
+/// The stages of indirect light in order. Thread-compatible.
+class IndirectPass {
+public:
+    explicit IndirectPass(const Device& device);
+
+    /// Did the previous frame, of this extent, leave a history, and was that checked?
+    bool hasHistory(Extent extent) const { return hasHistory_ && sampled_.extent() == extent; }
+    bool hasConfidence() const { return hasConfidence_; }
+    /// The next frame begins anew.
+    void forget() { hasHistory_ = hasConfidence_ = false; }
+
+    /// Enqueues a frame. `previous` are the previous frame's normal and depth; read only if there is history.
+    /// `progress`, if given, waits for the device between parts of a full sum and hears of each.
+    void enqueue(const FrameSurfaces& inputs, const FrameSurfaces& previous, const FrameParams& params,
+                 const std::function<void(double)>& progress);
+
+    /// lx: what the last frame made.
+    const Surface& irradiance() const { return irradiance_; }
+
+private:
+    void allocate(Extent extent, const FrameParams& params);
+    void uploadPattern(int count);
+    void gather(const FrameSurfaces& inputs, const FrameParams& params, const std::function<void(double)>& progress);
+    void sumInBands(const FrameSurfaces& inputs, const RsmSumParams& params,
+                    const std::function<void(double)>& progress);
+    void denoise(const FrameSurfaces& inputs, const FrameSurfaces& previous, const FrameParams& params);
+
+    Device device_;
+    RsmPackStage rsmPack_;
+    RsmGatherStage rsmGather_;
+    RsmSumStage rsmSum_;
+    TemporalStage temporal_;
+    HistoryCheckStage historyCheck_;
+    AtrousStage atrous_;
+
+    cl::Buffer noise_, pattern_, confidence_;
+    int patternSize_ = 0;
+    Surface sampled_;                 ///< this frame's estimate
+    Surface accumulated_;             ///< temporal's output, where history takes a filtered picture instead
+    Surface filtered_[2];             ///< the filter's passes in turn
+    HistorySurfaces history_, next_;  ///< what the previous frame left; what this one leaves
+    bool hasHistory_ = false, hasConfidence_ = false;
+    Surface irradiance_;  ///< one of the above
+};
+
+}  // namespace earthshine

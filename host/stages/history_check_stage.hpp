@@ -1,0 +1,30 @@
+#pragma once
+// Does history still fit what arrives? The host half of kernels/history_check.cl.
+
+#include "compute/kernel.hpp"
+#include "history_check_params.h"
+
+namespace earthshine {
+
+/// Writes one confidence a tile. Thread-compatible; owns its program, no images.
+class HistoryCheckStage {
+public:
+    struct Images {
+        const Surface& irradiance;   ///< this frame's estimate
+        const Surface& accumulated;  ///< temporal's output
+        const cl::Buffer& outConfidence;
+    };
+    explicit HistoryCheckStage(const Device& device) : kernel_(device, "history_check") {}
+    void enqueue(const Images& images, const HistoryCheckParams& params);
+
+    /// Tiles in x and y of a picture.
+    static Extent tiles(Extent extent) {
+        return {(extent.widthPx + CONFIDENCE_TILE_PX - 1) / CONFIDENCE_TILE_PX,
+                (extent.heightPx + CONFIDENCE_TILE_PX - 1) / CONFIDENCE_TILE_PX};
+    }
+
+private:
+    Kernel kernel_;
+};
+
+}  // namespace earthshine

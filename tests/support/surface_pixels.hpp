@@ -26,7 +26,7 @@ inline HostImage readSurface(const Device& device, const Surface& surface) {
             float* pixel = image.pixel(x, y);
             if (!isOne) pixel[3] = 1.0f;
             for (int c = 0; c < (isOne ? 1 : 3); ++c)
-                pixel[c] = planes[std::size_t(c * l.planeStride + y * l.pitch + x)];
+                pixel[c] = planes[std::size_t(SURFACE_GUARD + c * l.planeStride + y * l.pitch + x)];
         }
     }
     return image;

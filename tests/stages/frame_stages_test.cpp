@@ -74,7 +74,7 @@ Expected expectedOf(const FrameImages& images, const Settings& settings, int fra
 TEST_P(FrameStages, AgreeWithTheReference) {
     Pipeline pipeline{Device(GetParam().caps, GetParam().options)};
     int frameIndex = 0;  // a pipeline counts its runs
-    for (const Extent extent : {Extent{37, 11}, Extent{1, 1}, Extent{7, 3}}) {
+    for (const Extent extent : {Extent{1, 1}, Extent{37, 11}, Extent{7, 3}}) {
         SCOPED_TRACE(testing::Message() << extent.widthPx << " x " << extent.heightPx);
         reference::SyntheticOptions options;
         options.extent = extent;

@@ -4,7 +4,9 @@
 //   Dachsbacher & Stamminger 2005, whose weights leave the pdf out. Ours: s lies in the disk of the given radius by the
 //   pattern's pdf, so the mean is that of the full sum for any sample count and any radius that covers the map; beyond
 //   the map's border is black, at no bias, since texels there have no flux. Each pixel shifts the pattern's radii and turns
-//   it by blue noise (Cranley & Patterson 1976), so that what few samples miss becomes fine noise instead of bands.
+//   it by blue noise (Cranley & Patterson 1976), so that what few samples miss becomes fine noise instead of bands. Each
+//   frame moves all pixels' patterns on by the same step of a low-discrepancy sequence (frame_params.hpp), so that a mean
+//   over frames converges as one long pattern does, and a single frame's noise stays blue.
 //   in   inNormalWs     unit
 //   in   inDepth        m; 0 on sky
 //   in   rsm            all lights' maps below one another
@@ -33,14 +35,17 @@ __kernel void rsm_gather(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm
     vfloat3 positionWs = positionFromDepth(&params.cameraRays, px.x + laneIndex(), (vint)(px.y), depth);
     float size = (float)params.rsmSizePx;
 
-    vfloat shift = 0.5f / (float)params.sampleCount, cosTurn = 1.0f, sinTurn = 0.0f;
+    vfloat shift = 0.5f / (float)params.sampleCount, cosTurn = params.frameTurnCos, sinTurn = params.frameTurnSin;
     if (params.rotates) {
         __global const float* from = noise + (px.y % ROTATION_NOISE_SIZE_PX) * ROTATION_NOISE_SIZE_PX +
                                      px.x % ROTATION_NOISE_SIZE_PX;
         shift = *(__global const vfloat*)from;
-        cosTurn = *(__global const vfloat*)(from + ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX);
-        sinTurn = *(__global const vfloat*)(from + 2 * ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX);
+        vfloat cosNoise = *(__global const vfloat*)(from + ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX);
+        vfloat sinNoise = *(__global const vfloat*)(from + 2 * ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX);
+        cosTurn = cosNoise * params.frameTurnCos - sinNoise * params.frameTurnSin;
+        sinTurn = cosNoise * params.frameTurnSin + sinNoise * params.frameTurnCos;
     }
+    shift += params.frameShift;
 
     for (int l = 0; l < params.lightCount; ++l) {
         const LightParams light = lights[l];
@@ -57,7 +62,7 @@ __kernel void rsm_gather(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm
         for (int s = 0; s < params.sampleCount; ++s) {
             float4 p = pattern[s];
             vfloat r2 = p.w + shift;
-            vfloat r = params.radiusUv * size * sqrt(vselect(r2 >= 1.0f, r2 - 1.0f, r2));
+            vfloat r = params.radiusUv * size * sqrt(r2 - floor(r2));
             vfloat fx = vmad(r, p.x * cosTurn - p.y * sinTurn, cx);
             vfloat fy = vmad(r, p.x * sinTurn + p.y * cosTurn, cy);
             vmask isInside = (fx >= 0.0f) & (fx < size) & (fy >= 0.0f) & (fy < size);

@@ -19,6 +19,7 @@ struct FrameGeometry {
     int rsmSizePx = 0;
     int lightCount = 0;
     Extent shadowExtent;
+    int frameIndex = 0;  ///< counts frames, from any number on
 };
 
 /// The parameters of every stage of a frame.

@@ -58,6 +58,7 @@ struct Pipeline::Impl {
     int patternSize = 0;
     FrameParams params;
     bool hasFrame = false, hasRun = false;
+    int frameIndex = 0;
     std::vector<StageTime> times;
 
     void allocate() {
@@ -230,7 +231,7 @@ void Pipeline::run(const Settings& settings, const std::function<void(double)>& 
     p.transport.enqueue(p.frame, p.inputs);
     p.allocate();
     p.params = makeParams(settings, {makeViewRays(p.frame.camera, p.extent), p.inputs.rsm.sizePx,
-                                     p.inputs.rsm.lightCount, p.inputs.shadowExtent});
+                                     p.inputs.rsm.lightCount, p.inputs.shadowExtent, p.frameIndex});
     if (p.device.tuning().rsmRecords && p.inputs.rsm.lightCount > 0) p.rsmPack.enqueue(p.inputs.rsm, p.inputs.lights);
 
     p.directLight.enqueue(
@@ -253,6 +254,7 @@ void Pipeline::run(const Settings& settings, const std::function<void(double)>& 
     p.finish();
     p.collectTimes();
     p.hasRun = true;
+    p.frameIndex = (p.frameIndex + 1) % (1 << 30);
     if (progress) progress(1.0);
 }
 

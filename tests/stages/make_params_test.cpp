@@ -45,6 +45,7 @@ FrameGeometry geometry() {
     g.rsmSizePx = 64;
     g.lightCount = 2;
     g.shadowExtent = {128, 96};
+    g.frameIndex = 3;
     return g;
 }
 

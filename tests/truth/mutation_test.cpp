@@ -125,9 +125,8 @@ constexpr Mutation kEstimators[] = {
     {"disk of r, not r^2", "rsm_gather.cl", "params.radiusUv * params.radiusUv * size", "params.radiusUv * size"},
     {"disk without the map's size", "rsm_gather.cl", "* size * size * ES_INV_PI", "* ES_INV_PI"},
     {"disk without the pattern's weight", "rsm_gather.cl", "g * p.z", "g"},
-    {"disk denser at its centre", "rsm_gather.cl", "sqrt(vselect(r2 >= 1.0f, r2 - 1.0f, r2))",
-     "vselect(r2 >= 1.0f, r2 - 1.0f, r2)"},
-    {"disk that does not wrap", "rsm_gather.cl", "r2 - 1.0f, r2)", "r2, r2)"},
+    {"disk denser at its centre", "rsm_gather.cl", "sqrt(r2 - floor(r2))", "(r2 - floor(r2))"},
+    {"disk that does not wrap", "rsm_gather.cl", "r2 - floor(r2)", "r2"},
     {"disk with a lit border", "rsm_gather.cl", "vselect(isInside, g * p.z, 0.0f)", "g * p.z"},
 };
 

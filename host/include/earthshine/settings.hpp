@@ -27,6 +27,7 @@ struct Settings {
     float radiusUv = 1.4143f;               ///< (0; 2] (fraction of the RSM's side) - disk: radius; sqrt(2) covers the
                                             ///< map from anywhere, less gives up energy for less noise
     bool rotates = true;                    ///< disk: blue noise turns the pattern at each pixel; off: bands, no noise
+    bool animatesNoise = true;              ///< disk: each frame moves the pattern, so that frames' mean converges
     float shadowBiasTexels = 0.5f;          ///< [0; 16] (shadow map texels) - depth bias, constant part
     float shadowSlopeBiasTexels = 1.5f;     ///< [0; 16] (shadow map texels) - depth bias a unit of slope
     ToneCurve toneCurve = ToneCurve::Filmic;
@@ -56,6 +57,9 @@ void forEachSetting(SettingsT& s, Visitor&& visit) {
     visit(SettingInfo{"rotate", "", 0, 1,
                       "disk: blue noise turns the pattern at each pixel; off: bands instead of noise"},
           s.rotates);
+    visit(SettingInfo{"animate-noise", "", 0, 1,
+                      "disk: each frame turns and shifts the pattern on, for means over frames"},
+          s.animatesNoise);
     visit(SettingInfo{"shadow-bias", "shadow map texels", 0, 16, "constant depth bias of the shadow test"},
           s.shadowBiasTexels);
     visit(SettingInfo{"shadow-slope-bias", "shadow map texels", 0, 16, "depth bias for each unit of slope"},

@@ -120,14 +120,15 @@ constexpr Mutation kEstimators[] = {
     {"sum without 1/pi", "rsm_sum.cl", "(vfloat)(ES_INV_PI)", "(vfloat)(1.0f)"},
     {"sum twice", "rsm_sum.cl", "(vfloat)(ES_INV_PI)", "(vfloat)(2.0f * ES_INV_PI)"},
     {"sum misses two columns", "rsm_sum.cl", "x < params.rsmSizePx; ++x", "x < params.rsmSizePx - 2; ++x"},
-    {"disk without 1/pi", "rsm_gather.cl", "* size * size * ES_INV_PI", "* size * size"},
-    {"disk twice", "rsm_gather.cl", "* size * size * ES_INV_PI", "* size * size * 2.0f * ES_INV_PI"},
-    {"disk of r, not r^2", "rsm_gather.cl", "params.radiusUv * params.radiusUv * size", "params.radiusUv * size"},
-    {"disk without the map's size", "rsm_gather.cl", "* size * size * ES_INV_PI", "* ES_INV_PI"},
-    {"disk without the pattern's weight", "rsm_gather.cl", "g * p.z", "g"},
-    {"disk denser at its centre", "rsm_gather.cl", "sqrt(r2 - floor(r2))", "(r2 - floor(r2))"},
-    {"disk that does not wrap", "rsm_gather.cl", "r2 - floor(r2)", "r2"},
-    {"disk with a lit border", "rsm_gather.cl", "vselect(isInside, g * p.z, 0.0f)", "g * p.z"},
+    {"disk without 1/pi", "common/rsm_gather.clh", "* size * size * ES_INV_PI", "* size * size"},
+    {"disk twice", "common/rsm_gather.clh", "* size * size * ES_INV_PI", "* size * size * 2.0f * ES_INV_PI"},
+    {"disk of r, not r^2", "common/rsm_gather.clh", "params->radiusUv * params->radiusUv * size",
+     "params->radiusUv * size"},
+    {"disk without the map's size", "common/rsm_gather.clh", "* size * size * ES_INV_PI", "* ES_INV_PI"},
+    {"disk without the pattern's weight", "common/rsm_gather.clh", "g * p.z", "g"},
+    {"disk denser at its centre", "common/rsm_gather.clh", "sqrt(r2 - floor(r2))", "(r2 - floor(r2))"},
+    {"disk that does not wrap", "common/rsm_gather.clh", "r2 - floor(r2)", "r2"},
+    {"disk with a lit border", "common/rsm_gather.clh", "vselect(isInside, g * p.z, 0.0f)", "g * p.z"},
 };
 
 constexpr Mutation kTexels[] = {

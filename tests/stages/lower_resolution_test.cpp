@@ -11,13 +11,18 @@
 
 #include "earthshine/error.hpp"
 #include "interop/host_transport.hpp"
+#include "pipeline/make_params.hpp"
 #include "reference/device_variants.hpp"
 #include "reference/lower_resolution.hpp"
+#include "reference/synthetic_frame.hpp"
 #include "stages/bilateral_upsample_stage.hpp"
+#include "stages/blue_noise.hpp"
 #include "stages/downsample_stage.hpp"
 #include "stages/frame_params.hpp"
 #include "stages/interpolate_stage.hpp"
 #include "stages/pick_grid.hpp"
+#include "stages/rsm_gather_list_stage.hpp"
+#include "stages/rsm_pack_stage.hpp"
 #include "support/surface_pixels.hpp"
 
 namespace earthshine {
@@ -288,8 +293,8 @@ TEST_P(LowerResolution, AConstantStaysAndNothingBleeds) {
         const Picks picks(kExtent, stride);
         Picture p = picture(still, stride);
         // 1.1 everywhere: whatever the weights, it comes out as 1.1, to the rounding of two sums and a division.
-        // Then 1 on the floor and 100 on the board: each keeps its own, also where the board's plane meets the floor, as
-        // the cosine between them is 0.1, and its 8th power 1e-8 of 100.
+        // Then 1 on the floor and 100 on the board: each keeps its own, also where the board's plane meets the floor,
+        // as the cosine between them is 0.1, and its 8th power 1e-8 of 100.
         std::vector<glm::dvec3> constant(randomIrradiance(picks.low).size(), glm::dvec3(1.1)), two = constant;
         for (int y = 0; y < picks.low.heightPx; ++y)
             for (int x = 0; x < picks.low.widthPx; ++x)
@@ -388,6 +393,70 @@ TEST_P(LowerResolution, RefusesOtherStridesAndExtents) {
                  DeviceError);
     downsample_.enqueue({p.normalWs, p.depth, nullptr, p.lowNormalWs, p.lowDepth, nullptr}, 2);
     device_.impl().queue.finish();
+}
+
+// The gather at the pixels of a list is the gather of all pixels there, and leaves the others as they are.
+TEST_P(LowerResolution, AListIsGatheredAsAllPixelsAre) {
+    RsmPackStage pack(device_);
+    RsmGatherStage gather(device_);
+    RsmGatherListStage gatherList(device_);
+    Device::Impl& impl = device_.impl();
+    const auto upload = [&](const auto& values) {
+        const cl::Buffer buffer = impl.makeBuffer(values.size() * sizeof(values[0]));
+        impl.queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, values.size() * sizeof(values[0]), values.data());
+        return buffer;
+    };
+    constexpr int kSamples = 5;
+    const cl::Buffer pattern = upload(makeDiskPattern(kSamples)), noise = upload(makeRotationNoise());
+    for (const Extent extent : {Extent{1, 1}, Extent{7, 3}, Extent{37, 11}, Extent{70, 67}}) {
+        reference::SyntheticOptions options;
+        options.extent = extent;
+        options.skyFraction = extent.widthPx == 1 ? 0.0 : 0.2;
+        const FrameImages images = reference::makeSyntheticFrame(options);
+        const FrameInputs frame = images.inputs();
+        FrameSurfaces inputs;
+        transport_.enqueue(frame, inputs);
+        if (device_.tuning().rsmRecords) pack.enqueue(inputs.rsm, inputs.lights);
+        const Surface all(device_, PixelFormat::RGBA32F, extent), some(device_, PixelFormat::RGBA32F, extent);
+        std::vector<i32> surfaces;
+        for (i32 i = 0; i < extent.widthPx * extent.heightPx; ++i)
+            if (images.depth.pixel(0, 0)[i] > 0.0f) surfaces.push_back(i);
+        for (const bool rotates : {false, true}) {
+            Settings settings;
+            settings.sampleCount = kSamples;
+            settings.radiusUv = 0.4f;
+            settings.rotates = rotates;
+            const FrameGeometry geometry{makeViewRays(frame.camera, extent), inputs.rsm.sizePx, inputs.rsm.lightCount,
+                                         inputs.shadowExtent};
+            const RsmGatherParams params = makeParams(settings, geometry).gather;
+            gather.enqueue({inputs.normalWs, inputs.depth, inputs.rsm, inputs.lights, pattern, noise, all}, params);
+            const HostImage expected = test::readSurface(device_, all);
+            for (const std::size_t every : {1u, 3u, 40u, 100000u}) {
+                SCOPED_TRACE(testing::Message() << extent.widthPx << " x " << extent.heightPx << ", every " << every);
+                std::vector<i32> listed;  // backwards: in no order that a kernel could count on
+                for (std::size_t i = every == 1 ? 0 : every / 2; i < surfaces.size(); i += every)
+                    listed.insert(listed.begin(), surfaces[i]);
+                std::vector<i32> padded = listed;
+                padded.resize(std::size_t(extent.widthPx * extent.heightPx), -1);  // never to be read
+                const cl::Buffer pixels = upload(padded), count = upload(std::vector<i32>{i32(listed.size())});
+                const HostImage sevens =
+                    imageOf(extent, std::vector<glm::dvec3>(padded.size(), glm::dvec3(7.0, 8.0, 9.0)));
+                transport_.enqueueImage(sevens.view(), some, 0);
+                gatherList.enqueue({inputs.normalWs, inputs.depth, inputs.rsm, inputs.lights, pattern, noise, some},
+                                   pixels, count, params);
+                const HostImage actual = test::readSurface(device_, some);
+                for (i32 i = 0; i < extent.widthPx * extent.heightPx; ++i) {
+                    const bool isListed = std::find(listed.begin(), listed.end(), i) != listed.end();
+                    for (int c = 0; c < 3; ++c) {
+                        const float e = isListed ? expected.pixel(0, 0)[4 * i + c] : float(7 + c);
+                        // The same operations in two programs, which a compiler may contract differently.
+                        ASSERT_NEAR(actual.pixel(0, 0)[4 * i + c], e, isListed ? 1e-5f * std::fabs(e) : 0.0f) << i;
+                    }
+                }
+            }
+        }
+        transport_.release();
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LowerResolution, testing::ValuesIn(reference::quickVariants()),

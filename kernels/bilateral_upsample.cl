@@ -38,41 +38,44 @@ __kernel void bilateral_upsample(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), SU
         store3(outIrradiance, px, irradiance);
         return;
     }
-    const ViewRays rays = withoutOrigin(params.cameraRays);
-    const PickPoint point = pickPoint(&rays, &params.grid, px, depth, load3(inNormalWs, px));
-    const PickTaps taps = tapsAround(&params.grid, px, lowDepthLayout);
+    const PickGrid grid = params.grid;
+    const PickPoint point = pickPoint(&params.cameraRays, &grid, px, depth, load3(inNormalWs, px));
+    const PickTaps taps = tapsAround(&grid, px, lowDepthLayout);
 
     vfloat sum = 0.0f;
     for (int i = 0; i < 4; ++i) {
-        vint x = taps.x[i & 1], y = (vint)(taps.y[i >> 1]);
-        TapMatch match =
-            matchTap(&rays, &params.grid, &point, x, y, gather1(lowDepth, x, y), gather3(lowNormalWs, x, y));
+        int next = i & 1, row = i >> 1;
+        vfloat tapDepth = spreadTexels(loadTexels1(lowDepth, taps, row, next), &grid, next);
+        vfloat3 tapNormalWs = spreadTexels3(loadTexels3(lowNormalWs, taps, row, next), &grid, next);
+        TapMatch match = matchTap(&grid, &point, taps.x + next, taps.y[row], tapDepth, tapNormalWs);
+        vfloat bilinear = taps.weightX[next] * (row ? taps.fractionY : 1.0f - taps.fractionY);
         vfloat plane = max(vmad(-match.planeTexels, match.planeTexels, 1.0f), 0.0f);
         vfloat cosine2 = match.cosine * match.cosine, cosine4 = cosine2 * cosine2;
-        vfloat weight = vselect(match.isSurface, tapWeight(&taps, i) * plane * (cosine4 * cosine4), 0.0f);
-        irradiance = mad3(weight, gather3(lowIrradiance, x, y), irradiance);
+        vfloat weight = vselect(match.isSurface, bilinear * plane * (cosine4 * cosine4), 0.0f);
+        irradiance = mad3(weight, spreadTexels3(loadTexels3(lowIrradiance, taps, row, next), &grid, next), irradiance);
         sum += weight;
     }
     irradiance = scale3(1.0f / max(sum, MIN_WEIGHT), irradiance);
 
     vmask isLost = isSurface & (sum < MIN_WEIGHT);
     if (anyLane(isLost)) {
-        vint nearX = vselectInt(taps.fractionX < 0.5f, taps.x[0], taps.x[1]);
+        vint nearX = vselectInt(taps.weightX[1] >= 0.5f, taps.x + 1, taps.x);
+        nearX = min(max(nearX, 0), lowDepthLayout.widthPx - 1);
         int nearY = taps.fractionY < 0.5f ? taps.y[0] : taps.y[1];
         vint bestX = nearX, bestY = (vint)(nearY);
         vfloat bestCost = 3.0f;  // more than any
         for (int i = 0; i < 9; ++i) {
             int j = nearerFirst[i];
             vint x = min(max(nearX + (j % 3 - 1), 0), lowDepthLayout.widthPx - 1);
-            vint y = (vint)(min(max(nearY + (j / 3 - 1), 0), lowDepthLayout.heightPx - 1));
-            TapMatch match =
-                matchTap(&rays, &params.grid, &point, x, y, gather1(lowDepth, x, y), gather3(lowNormalWs, x, y));
+            int y = min(max(nearY + (j / 3 - 1), 0), lowDepthLayout.heightPx - 1);
+            TapMatch match = matchTap(&grid, &point, x, y, gather1(lowDepth, x, (vint)(y)),
+                                      gather3(lowNormalWs, x, (vint)(y)));
             vfloat cost = match.planeTexels / (match.planeTexels + 1.0f) + (1.0f - match.cosine);
             cost += LATER_COST * (float)i;
             vmask isBetter = match.isSurface & (cost < bestCost);
             bestCost = vselect(isBetter, cost, bestCost);
             bestX = vselectInt(isBetter, x, bestX);
-            bestY = vselectInt(isBetter, y, bestY);
+            bestY = vselectInt(isBetter, (vint)(y), bestY);
         }
         vfloat3 best = gather3(lowIrradiance, bestX, bestY);
         best = select3(bestCost < 3.0f, best, make3(0.0f, 0.0f, 0.0f));

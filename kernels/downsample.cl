@@ -7,20 +7,19 @@
 //   Work 2D, one item per LANES texels of a row, any local size; items past the edge return.
 
 #include "downsample_params.h"
-#include "surface.clh"
+#include "pick_grid.clh"
 
 __kernel void downsample(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), SURFACE_IN(inMotion), SURFACE_OUT(outNormalWs),
                          SURFACE_OUT(outDepth), SURFACE_OUT(outMotion), const DownsampleParams params) {
     Pixel px = itemPixel();
     if (isOutside(px, outDepthLayout)) return;
-    vint x = ((px.x + laneIndex()) << params.grid.strideLog2) + params.grid.offsetXPx;
-    x = min(x, inDepthLayout.widthPx - 1);  // lanes past the edge
-    vint y = (vint)((px.y << params.grid.strideLog2) + params.grid.offsetYPx);
-    store3(outNormalWs, px, gather3(inNormalWs, x, y));
-    store1(outDepth, px, gather1(inDepth, x, y));
+    const PickGrid grid = params.grid;
+    int x = (px.x << grid.strideLog2) + grid.offsetXPx, y = (px.y << grid.strideLog2) + grid.offsetYPx;
+    store3(outNormalWs, px, pickRow3(SURFACE_ARG(inNormalWs), grid.strideLog2, x, y));
+    store1(outDepth, px, pickRow1(SURFACE_ARG(inDepth), grid.strideLog2, x, y));
     if (params.picksMotion) {
-        vfloat3 motion = gather3(inMotion, x, y);
-        vfloat perPixel = 1.0f / (float)(1 << params.grid.strideLog2);
+        vfloat3 motion = pickRow3(SURFACE_ARG(inMotion), grid.strideLog2, x, y);
+        vfloat perPixel = 1.0f / (float)(1 << grid.strideLog2);
         store3(outMotion, px, make3(motion.x * perPixel, motion.y * perPixel, motion.z));
     }
 }

@@ -28,20 +28,21 @@ __kernel void interpolate(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), SURFACE_I
         store3(outIrradiance, px, irradiance);
         return;
     }
-    const ViewRays rays = withoutOrigin(params.cameraRays);
-    const PickPoint point = pickPoint(&rays, &params.grid, px, depth, load3(inNormalWs, px));
-    const PickTaps taps = tapsAround(&params.grid, px, lowDepthLayout);
+    const PickGrid grid = params.grid;
+    const PickPoint point = pickPoint(&params.cameraRays, &grid, px, depth, load3(inNormalWs, px));
+    const PickTaps taps = tapsAround(&grid, px, lowDepthLayout);
 
     vfloat sum = 0.0f, asked = 0.0f, suitable = 0.0f;
     for (int i = 0; i < 4; ++i) {
-        vint x = taps.x[i & 1], y = (vint)(taps.y[i >> 1]);
-        TapMatch match =
-            matchTap(&rays, &params.grid, &point, x, y, gather1(lowDepth, x, y), gather3(lowNormalWs, x, y));
+        int next = i & 1, row = i >> 1;
+        vfloat tapDepth = spreadTexels(loadTexels1(lowDepth, taps, row, next), &grid, next);
+        vfloat3 tapNormalWs = spreadTexels3(loadTexels3(lowNormalWs, taps, row, next), &grid, next);
+        TapMatch match = matchTap(&grid, &point, taps.x + next, taps.y[row], tapDepth, tapNormalWs);
+        vfloat bilinear = taps.weightX[next] * (row ? taps.fractionY : 1.0f - taps.fractionY);
         vmask isSuitable = match.isSurface & (match.planeTexels <= params.maxPlaneTexels) &
                            (match.cosine >= params.minCosine);
-        vfloat bilinear = tapWeight(&taps, i);
         vfloat weight = vselect(isSuitable, bilinear, 0.0f);
-        irradiance = mad3(weight, gather3(lowIrradiance, x, y), irradiance);
+        irradiance = mad3(weight, spreadTexels3(loadTexels3(lowIrradiance, taps, row, next), &grid, next), irradiance);
         sum += weight;
         asked += vselect(bilinear > 0.0f, 1.0f, 0.0f);
         suitable += vselect(weight > 0.0f, 1.0f, 0.0f);

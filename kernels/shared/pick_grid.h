@@ -15,7 +15,7 @@ namespace earthshine {
 
 typedef struct PickGrid {
     i32 strideLog2;  // 0, 1 or 2: every, every second, every fourth pixel
-    i32 offsetXPx;   // [0; stride)
+    i32 offsetXPx;   // 0; of every fourth pixel 0 or 1 (pick_grid.clh)
     i32 offsetYPx;
     i32 padding0;
 } PickGrid;

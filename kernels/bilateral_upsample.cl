@@ -21,9 +21,9 @@
 // Less than this in sum, and the four do not fit: a hundredth of what the farthest of four gets by its place alone.
 #define MIN_WEIGHT 6e-4f
 
-// The 3 x 3, row by row from 0: the nearer first. Each costs a little more than the one before, so that rounding does
-// not choose between texels of one plane.
-__constant int nearerFirst[9] = {4, 1, 3, 5, 7, 0, 2, 6, 8};
+// The 3 x 3, row by row from 0, the nearer first: the middle, and then these, a nibble each from the lowest. Each costs
+// a little more than the one before, so that rounding does not choose between texels of one plane.
+#define NEARER_FIRST 0x86207531u
 #define LATER_COST 0.005f
 
 __kernel void bilateral_upsample(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), SURFACE_IN(lowNormalWs),
@@ -65,7 +65,7 @@ __kernel void bilateral_upsample(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), SU
         vint bestX = nearX, bestY = (vint)(nearY);
         vfloat bestCost = 3.0f;  // more than any
         for (int i = 0; i < 9; ++i) {
-            int j = nearerFirst[i];
+            int j = i == 0 ? 4 : (int)((NEARER_FIRST >> (4 * (i - 1))) & 15u);
             vint x = min(max(nearX + (j % 3 - 1), 0), lowDepthLayout.widthPx - 1);
             int y = min(max(nearY + (j / 3 - 1), 0), lowDepthLayout.heightPx - 1);
             TapMatch match = matchTap(&grid, &point, x, y, gather1(lowDepth, x, (vint)(y)),

@@ -360,7 +360,7 @@ TEST_P(LowerResolution, OutputsAreFiniteWhateverThePictureHolds) {
     constexpr float kJunk[] = {0.0f, -1.0f, 1e6f, -1e15f, 1e15f, 3e38f, 1e-44f, 1e-20f, 1.0f};
     std::mt19937 random(11);
     const auto junk = [&] { return kJunk[random() % std::size(kJunk)]; };
-    for (int round = 0; round < 8; ++round) {
+    for (int round = 0; round < 4; ++round) {
         Still still = reference::makeStill(kExtent, round % 2 == 1);
         HostImage normal(PixelFormat::RGBA32F, kExtent), motion(PixelFormat::RGBA32F, kExtent);
         for (int i = 0; i < kExtent.widthPx * kExtent.heightPx; ++i) {

@@ -22,6 +22,7 @@ const Variant& naive();
 /// The device that --device chose.
 const DeviceCaps& chosenDevice();
 
+void registerLowerResolution();
 void registerRsmGather();
 
 }  // namespace earthshine::bench

@@ -4,7 +4,9 @@
 //   Dachsbacher & Stamminger 2005, whose weights leave the pdf out. Ours: s lies in the disk of the given radius by the
 //   pattern's pdf, so the mean is that of the full sum for any sample count and any radius that covers the map; beyond
 //   the map's border is black, at no bias, since texels there have no flux. Each pixel shifts the pattern's radii and turns
-//   it by blue noise (Cranley & Patterson 1976), so that what few samples miss becomes fine noise instead of bands.
+//   it by blue noise (Cranley & Patterson 1976), so that what few samples miss becomes fine noise instead of bands. Each
+//   frame moves all pixels' patterns on by the same step of a low-discrepancy sequence (frame_params.hpp), so that a mean
+//   over frames converges as one long pattern does, and a single frame's noise stays blue.
 //   in   inNormalWs     unit
 //   in   inDepth        m; 0 on sky
 //   in   rsm            all lights' maps below one another
@@ -15,7 +17,7 @@
 //   Work 2D, one item per LANES pixels of a row, any local size; items past the edge return.
 
 #include "rsm.clh"
-#include "rsm_gather_params.h"
+#include "rsm_gather.clh"
 
 __kernel void rsm_gather(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm),
                          __global const LightParams* restrict lights, __global const float4* restrict pattern,
@@ -31,44 +33,16 @@ __kernel void rsm_gather(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm
     }
     vfloat3 normalWs = load3(inNormalWs, px);
     vfloat3 positionWs = positionFromDepth(&params.cameraRays, px.x + laneIndex(), (vint)(px.y), depth);
-    float size = (float)params.rsmSizePx;
 
-    vfloat shift = 0.5f / (float)params.sampleCount, cosTurn = 1.0f, sinTurn = 0.0f;
+    vfloat shift = 0.5f / (float)params.sampleCount, cosNoise = 1.0f, sinNoise = 0.0f;
     if (params.rotates) {
         __global const float* from = noise + (px.y % ROTATION_NOISE_SIZE_PX) * ROTATION_NOISE_SIZE_PX +
                                      px.x % ROTATION_NOISE_SIZE_PX;
         shift = *(__global const vfloat*)from;
-        cosTurn = *(__global const vfloat*)(from + ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX);
-        sinTurn = *(__global const vfloat*)(from + 2 * ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX);
+        cosNoise = *(__global const vfloat*)(from + ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX);
+        sinNoise = *(__global const vfloat*)(from + 2 * ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX);
     }
-
-    for (int l = 0; l < params.lightCount; ++l) {
-        const LightParams light = lights[l];
-        // The disk's centre stays on the map, wherever the point is: all that a farther centre could do is miss it.
-        vfloat w = rowTimesPoint(light.wRow, positionWs);
-        vfloat scale = size / max(w, 1e-6f);
-        vmask isAhead = w > 1e-6f;
-        vfloat cx = vselect(isAhead, rowTimesPoint(light.uRow, positionWs) * scale, 0.5f * size);
-        vfloat cy = vselect(isAhead, rowTimesPoint(light.vRow, positionWs) * scale, 0.5f * size);
-        cx = min(max(cx, 0.0f), size);
-        cy = min(max(cy, 0.0f), size);
-
-        vfloat3 sum = make3(0.0f, 0.0f, 0.0f);
-        for (int s = 0; s < params.sampleCount; ++s) {
-            float4 p = pattern[s];
-            vfloat r2 = p.w + shift;
-            vfloat r = params.radiusUv * size * sqrt(vselect(r2 >= 1.0f, r2 - 1.0f, r2));
-            vfloat fx = vmad(r, p.x * cosTurn - p.y * sinTurn, cx);
-            vfloat fy = vmad(r, p.x * sinTurn + p.y * cosTurn, cy);
-            vmask isInside = (fx >= 0.0f) & (fx < size) & (fy >= 0.0f) & (fy < size);
-            vint x = vselectInt(isInside, toVint(fx), 0);
-            vint y = vselectInt(isInside, toVint(fy), 0) + l * params.rsmSizePx;
-            RsmTexel t = rsmGather(rsm, x, y, params.rsmSizePx, &light);
-            vfloat g = texelGeometry(positionWs, normalWs, t.positionWs, t.normalWs, t.radius);
-            sum = mad3(vselect(isInside, g * p.z, 0.0f), t.flux, sum);
-        }
-        // A sample at density pdf over the disk of radius r stands for r^2 / pdf of the unit square of N x N texels.
-        irradiance = mad3((vfloat)(params.radiusUv * params.radiusUv * size * size * ES_INV_PI), sum, irradiance);
-    }
+    irradiance = diskIrradiance(RSM_ARG(rsm), lights, pattern, &params,
+                                patternMove(&params, shift, cosNoise, sinNoise), positionWs, normalWs);
     store3(outIrradiance, px, select3(isSurface, irradiance, make3(0.0f, 0.0f, 0.0f)));
 }

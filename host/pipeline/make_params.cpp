@@ -1,6 +1,9 @@
 #include "pipeline/make_params.hpp"
 
 #include <cmath>
+#include <numbers>
+
+#include "stages/frame_params.hpp"
 
 namespace earthshine {
 
@@ -77,6 +80,10 @@ FrameParams makeParams(const Settings& settings, const FrameGeometry& frame) {
     p.gather.sampleCount = settings.sampleCount;
     p.gather.radiusUv = settings.radiusUv;
     p.gather.rotates = settings.rotates ? 1 : 0;
+    const FrameMove move = makeFrameMove(settings.animatesNoise ? frame.frameIndex : 0, settings.sampleCount);
+    p.gather.frameShift = float(move.shift);
+    p.gather.frameTurnCos = float(std::cos(2.0 * std::numbers::pi * move.turn));
+    p.gather.frameTurnSin = float(std::sin(2.0 * std::numbers::pi * move.turn));
     p.sum.cameraRays = frame.cameraRays;
     p.sum.rsmSizePx = frame.rsmSizePx;
     p.sum.lightCount = frame.lightCount;

@@ -22,6 +22,7 @@ struct FrameGeometry {
     int rsmSizePx = 0;
     int lightCount = 0;
     Extent shadowExtent;
+    int frameIndex = 0;          ///< counts frames, from any number on
     ViewRays previousRays{};     ///< of the previous frame's camera
     bool hasHistory = false;     ///< a previous frame of the same extent left its history
     bool hasConfidence = false;  ///< and had it checked

@@ -51,6 +51,7 @@ struct Pipeline::Impl {
     cl::Buffer exposure, display, pixels;
     FrameParams params;
     bool hasFrame = false, hasRun = false;
+    int frameIndex = 0;
     std::vector<StageTime> times;
 
     void allocate() {
@@ -182,9 +183,11 @@ void Pipeline::run(const Settings& settings, const std::function<void(double)>& 
     p.transport.enqueue(p.frame, p.inputs);
     p.allocate();
     const ViewRays rays = makeViewRays(p.frame.camera, p.extent);
-    p.params = makeParams(settings, {rays, p.inputs.rsm.sizePx, p.inputs.rsm.lightCount, p.inputs.shadowExtent,
-                                     p.previousRays, p.indirect.hasHistory(p.extent), p.indirect.hasConfidence()});
+    p.params =
+        makeParams(settings, {rays, p.inputs.rsm.sizePx, p.inputs.rsm.lightCount, p.inputs.shadowExtent, p.frameIndex,
+                              p.previousRays, p.indirect.hasHistory(p.extent), p.indirect.hasConfidence()});
     p.previousRays = rays;
+
     p.directLight.enqueue(
         {p.inputs.normalWs, p.inputs.depth, p.inputs.shadowDepth, p.inputs.lights, p.directIrradiance},
         p.params.directLight);
@@ -198,6 +201,7 @@ void Pipeline::run(const Settings& settings, const std::function<void(double)>& 
     p.device.impl().finish();
     p.collectTimes();
     p.hasRun = true;
+    p.frameIndex = (p.frameIndex + 1) % (1 << 30);
     if (progress) progress(1.0);
 }
 

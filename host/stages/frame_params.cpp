@@ -93,4 +93,12 @@ std::vector<f32x4> makeDiskPattern(int count) {
     return pattern;
 }
 
+FrameMove makeFrameMove(int index, int sampleCount) {
+    constexpr double kPlastic = 1.32471795724474602596;  // x^3 = x + 1
+    const auto fraction = [](double x) { return x - std::floor(x); };
+    // Within a ring, not over the disk: a step of some irrational number over it would be nearly a whole number of
+    // rings for some sample counts (the golden ratio's at 8), and the rings' gaps would fill slowly.
+    return {fraction(index / kPlastic) / sampleCount, fraction(index / (kPlastic * kPlastic))};
+}
+
 }  // namespace earthshine

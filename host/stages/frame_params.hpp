@@ -19,4 +19,14 @@ LightParams makeLightParams(const Light& light, Extent rsmExtent, Extent shadowE
 /// pdf = 1 / pi; r^2 goes from 0 in steps of 1 / count, and wants a shift.
 std::vector<f32x4> makeDiskPattern(int count);
 
+/// How frame `index` moves the pattern of every pixel: r^2 by `shift` [0; 1 / sampleCount), all of it by `turn` [0; 1)
+/// of a circle. Frame 0 stays.
+struct FrameMove {
+    double shift, turn;
+};
+
+/// The R2 sequence (Roberts 2018): in each of the pattern's rings of equal area, one a sample, the points of N frames
+/// are low-discrepancy, by radius and angle together.
+FrameMove makeFrameMove(int index, int sampleCount);
+
 }  // namespace earthshine

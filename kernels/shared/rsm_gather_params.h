@@ -16,7 +16,8 @@ typedef struct RsmGatherParams {
     i32 sampleCount;  // a light, [1; 4096]
     f32 radiusUv;     // (0; 2], fraction of the map's side
     i32 rotates;      // 0 or 1: each pixel turns and shifts the pattern by its noise
-    i32 padding0, padding1, padding2;
+    f32 frameShift;   // [0; 1 / sampleCount): this frame moves r^2 by it, of all pixels
+    f32 frameTurnCos, frameTurnSin;  // and the pattern by this turn
 } RsmGatherParams;
 ES_ASSERT_SIZE(RsmGatherParams, 128);
 

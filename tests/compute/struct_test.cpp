@@ -7,15 +7,22 @@
 #include <cstring>
 #include <numeric>
 
+#include "atrous_params.h"
+#include "bilateral_upsample_params.h"
 #include "compute/probe.hpp"
 #include "direct_light_params.h"
+#include "downsample_params.h"
 #include "exposure_params.h"
+#include "history_check_params.h"
+#include "interpolate_params.h"
 #include "light_params.h"
 #include "modulate_params.h"
+#include "pick_grid.h"
 #include "rsm_gather_params.h"
 #include "rsm_pack_params.h"
 #include "rsm_sum_params.h"
 #include "surface_layout.h"
+#include "temporal_params.h"
 #include "tone_map_params.h"
 #include "unpack_params.h"
 

@@ -128,6 +128,13 @@ PatternMove patternMove(int x, int y) {
     return {(rank(0) + turn) / (kSize * kSize), turn};
 }
 
+PatternMove frameMove(int index, int sampleCount) {
+    // R2: with g the root of g^3 = g + 1, (index / g, index / g^2) modulo 1.
+    double g = 1.0;
+    for (int i = 0; i < 60; ++i) g = std::cbrt(1.0 + g);
+    return {std::fmod(index / g, 1.0) / sampleCount, std::fmod(index / (g * g), 1.0)};
+}
+
 glm::dvec3 rsmDisk(const SurfacePoint& x, const std::vector<Vpl>& texels, const Light& light, int size, int count,
                    double radiusUv, PatternMove move) {
     glm::dvec3 sum(0.0);

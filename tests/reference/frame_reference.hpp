@@ -51,6 +51,9 @@ struct PatternMove {
 /// The move of pixel (x, y) by the two tiles of data/noise/blue_noise.pgm.
 PatternMove patternMove(int x, int y);
 
+/// The further move of frame `index`: r^2 by a fraction of a sample's step, by the R2 sequence.
+PatternMove frameMove(int index, int sampleCount);
+
 /// The disk estimator with `count` Hammersley points around the projection of x, for an RSM of side `size`.
 glm::dvec3 rsmDisk(const SurfacePoint& x, const std::vector<Vpl>& texels, const Light& light, int size, int count,
                    double radiusUv, PatternMove move);

@@ -35,6 +35,13 @@ std::vector<unsigned char> bytesOf(const FrameParams& p) {
     append(p.directLight);
     append(p.exposure);
     append(p.toneMap);
+    append(p.denoises);
+    append(p.accumulates);
+    append(p.temporal);
+    append(p.checksHistory);
+    append(p.historyCheck);
+    for (const AtrousParams& pass : p.filterPasses) append(pass);
+    append(p.feedbackPasses);
     return bytes;
 }
 
@@ -45,6 +52,8 @@ FrameGeometry geometry() {
     g.rsmSizePx = 64;
     g.lightCount = 2;
     g.shadowExtent = {128, 96};
+    g.frameIndex = 3;
+    g.hasHistory = g.hasConfidence = true;
     return g;
 }
 
@@ -61,8 +70,11 @@ void nudge(const SettingInfo& info, Value& value) {
 }
 
 TEST(MakeParams, EverySettingMovesSomething) {
-    const std::vector<unsigned char> before = bytesOf(makeParams(Settings(), geometry()));
+    // The middle of everything: where the denoiser runs, all that it does can be seen.
     Settings settings;
+    settings.accumulates = true;
+    settings.filterIterations = 7;
+    const std::vector<unsigned char> before = bytesOf(makeParams(settings, geometry()));
     forEachSetting(settings, [&](const SettingInfo& info, auto& value) {
         const auto kept = value;
         nudge(info, value);
@@ -132,6 +144,8 @@ TEST(MakeParams, OutOfRangeIsRefusedByName) {
             }
             for (const double v : {info.min, info.max}) {
                 value = Value(v);
+                if (std::string(info.name) == "feedback")
+                    settings.filterIterations = int(v);  // it remembers one of these
                 EXPECT_NO_THROW(validate(settings)) << info.name << " = " << v;
             }
             value = kept;
@@ -139,6 +153,17 @@ TEST(MakeParams, OutOfRangeIsRefusedByName) {
         }
     });
     EXPECT_GT(numbers, 3);
+}
+
+TEST(MakeParams, HistoryCannotRememberAnIterationThatIsNotRun) {
+    Settings settings;
+    settings.filterIterations = 2;
+    settings.feedback = 3;
+    EXPECT_THAT(test::thrown<UsageError>([&] { validate(settings); }), testing::HasSubstr("iteration 3 of 2"));
+}
+
+TEST(MakeParams, EveryPresetIsInRange) {
+    for (int i = 0; i < int(std::size(kPresetNames)); ++i) EXPECT_NO_THROW(validate(settingsOf(Preset(i)))) << i;
 }
 
 TEST(MakeParams, EverySettingIsExplained) {

@@ -163,6 +163,7 @@ Settings wholeDisk(int sampleCount, double radiusUv) {
     settings.estimator = Estimator::Disk;
     settings.sampleCount = sampleCount;
     settings.radiusUv = float(radiusUv);
+    settings.animatesNoise = false;
     return settings;
 }
 

@@ -47,7 +47,7 @@ private:
 HostImage compute(Pipeline& pipeline, const FrameImages& frame, const Settings& settings,
                   Output output = Output::IndirectIrradiance);
 
-/// Settings of the full sum, and of the disk with a radius that covers the map from any point.
+/// Settings of the full sum, and of the disk with a radius that covers the map from any point, the same every frame.
 Settings fullSum();
 Settings wholeDisk(int sampleCount, double radiusUv = 1.4142136);
 

@@ -42,6 +42,7 @@ struct Settings {
     float radiusUv = 1.4143f;               ///< (0; 2] (fraction of the RSM's side) - disk: radius; sqrt(2) covers the
                                             ///< map from anywhere, less gives up energy for less noise
     bool rotates = true;                    ///< disk: blue noise turns the pattern at each pixel; off: bands, no noise
+    bool animatesNoise = true;              ///< disk: each frame moves the pattern, so that frames' mean converges
     bool accumulates = false;               ///< frames are averaged over time, along motion vectors
     int historyFrames = 32;                 ///< [1; 1024] (frames) - accumulate: what history is worth at most
     float antiLag = 16.0f;       ///< [0; 256] - accumulate: history is dropped where the light changed by more than
@@ -87,6 +88,9 @@ void forEachSetting(SettingsT& s, Visitor&& visit) {
     visit(SettingInfo{"rotate", "", 0, 1,
                       "disk: blue noise turns the pattern at each pixel; off: bands instead of noise"},
           s.rotates);
+    visit(SettingInfo{"animate-noise", "", 0, 1,
+                      "disk: each frame turns and shifts the pattern on, for means over frames"},
+          s.animatesNoise);
     visit(SettingInfo{"accumulate", "", 0, 1, "average frames over time, along motion vectors"}, s.accumulates);
     visit(SettingInfo{"history", "frames", 1, 1024, "accumulate: what history is worth at most"}, s.historyFrames);
     visit(

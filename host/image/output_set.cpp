@@ -51,7 +51,7 @@ OutputSet::~OutputSet() {
     discard();
 }
 
-void OutputSet::announce(const fs::path& path, Output& output) const {
+void OutputSet::announce(const fs::path& path, Output& output) {
     std::error_code error;
     output.path = path;
     fs::path plain = fs::absolute(path, error).lexically_normal();
@@ -61,9 +61,8 @@ void OutputSet::announce(const fs::path& path, Output& output) const {
     // A link is followed, so that its target gets replaced and not the link.
     output.resolved = fs::weakly_canonical(plain, error);
     if (error) output.resolved = plain;
-    for (const Output& other : outputs_)
-        if (other.resolved == output.resolved)
-            throw UsageError(fmt::format("{}: two outputs have this path; give each its own", path.string()));
+    if (!resolved_.insert(output.resolved).second)
+        throw UsageError(fmt::format("{}: two outputs have this path; give each its own", path.string()));
     if (const fs::path folder = output.resolved.parent_path(); !fs::is_directory(folder, error))
         throw Error(fmt::format("{}: there is no folder {}; make it first", path.string(), folder.string()));
 }

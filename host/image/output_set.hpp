@@ -2,6 +2,7 @@
 // The files and folders that a command makes: they appear whole or not at all.
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -41,10 +42,11 @@ private:
     struct Output {
         std::filesystem::path path, resolved, temporary;
     };
-    void announce(const std::filesystem::path& path, Output& output) const;
+    void announce(const std::filesystem::path& path, Output& output);
     void discard() noexcept;
 
     std::vector<Output> outputs_;
+    std::set<std::filesystem::path> resolved_;  ///< of all outputs: a sequence has many
 };
 
 }  // namespace earthshine

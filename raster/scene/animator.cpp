@@ -6,6 +6,7 @@
 #include <limits>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include "earthshine/error.hpp"
 #include "raster/scene/node_transform.hpp"
@@ -19,10 +20,10 @@ std::vector<const Animation*> find(const Scene& scene, std::string_view which) {
         throw UsageError(fmt::format("{}: the file has no animation that could be played", scene.name));
     std::vector<const Animation*> found;
     for (const Animation& animation : scene.animations) {
-        if (which.empty() || animation.name == which) found.push_back(&animation);
-        if (!which.empty() && !found.empty()) return found;
+        if (animation.name == which && !which.empty()) return {&animation};
+        found.push_back(&animation);
     }
-    if (!found.empty()) return found;
+    if (which.empty()) return found;
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(which.data(), which.data() + which.size(), index);
     if (error == std::errc() && end == which.data() + which.size() && index < scene.animations.size())
@@ -91,16 +92,15 @@ void Animator::pose(Scene& scene, double timeS) const {
             throw InputError(fmt::format("{}: at {:.3f} s its animation moves something beyond what 32-bit floats hold",
                                          scene.name, timeS));
     }
-    const auto isMoved = [this](int node) { return node >= 0 && movedNodes_[std::size_t(node)]; };
     for (const int instance : movedInstances_) {
         Instance& moved = scene.instances[std::size_t(instance)];
         moved.worldFromObject = glm::mat4(worldFromNode[std::size_t(moved.node)]);
     }
     for (SceneCamera& camera : scene.cameras)
-        if (isMoved(camera.node))
+        if (moves(camera.node))
             camera.worldFromView = rigid(worldFromNode[std::size_t(camera.node)]).value_or(camera.worldFromView);
     for (SceneLight& light : scene.lights)
-        if (isMoved(light.node))
+        if (moves(light.node))
             light.worldFromLight = rigid(worldFromNode[std::size_t(light.node)]).value_or(light.worldFromLight);
 }
 
@@ -117,6 +117,11 @@ std::vector<WorldBox> Animator::sweptBounds(Scene& scene, double framesPerSecond
             const Instance& instance = scene.instances[std::size_t(movedInstances_[i])];
             add(boxes[i], scene.meshes[std::size_t(instance.mesh)], instance.worldFromObject);
         }
+    }
+    for (WorldBox& box : boxes) {
+        const glm::vec3 slack = 1e-6f * glm::max(glm::abs(box.min), glm::abs(box.max));
+        box.min -= slack;
+        box.max += slack;
     }
     return boxes;
 }

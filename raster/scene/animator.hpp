@@ -30,12 +30,16 @@ public:
     /// The instances that pose() moves, in order.
     const std::vector<int>& movedInstances() const noexcept { return movedInstances_; }
 
+    /// Whether pose() moves what hangs on a node of Scene::nodes; -1 is none.
+    bool moves(int node) const { return node >= 0 && movedNodes_[std::size_t(node)]; }
+
     /// The time of the last key of all, s; from there on nothing moves.
     double lastKeyS() const noexcept { return lastKeyS_; }
 
     /// The box in which each moved instance stays at the times 0, 1 / framesPerSecond, ... up to the last key; of a
     /// longer animation than 4096 such steps at so many steps of equal length. Parallel to movedInstances. Poses
-    /// `scene`, and leaves it at the last of these times. Throws as pose.
+    /// `scene`, and leaves it at the last of these times. A millionth larger than it need be, so that rounding puts
+    /// nothing outside. Throws as pose.
     std::vector<WorldBox> sweptBounds(Scene& scene, double framesPerSecond) const;
 
 private:

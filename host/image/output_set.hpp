@@ -42,7 +42,7 @@ private:
     struct Output {
         std::filesystem::path path, resolved, temporary;
     };
-    void announce(const std::filesystem::path& path, Output& output);
+    void announce(const std::filesystem::path& path, Output& output) const;
     void discard() noexcept;
 
     std::vector<Output> outputs_;

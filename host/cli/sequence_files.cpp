@@ -50,13 +50,13 @@ SequenceFiles::SequenceFiles(const FrameFileArguments& arguments, const std::str
         filmTemporary_ = outputs.addFile(filmPath_);
     }
     if (!numbersFrames_) return;
-    // What can be refused is refused before anything slow is done, the names of all frames beside those announced too.
+    // What can be refused is refused before anything slow is done, the frames' names beside those announced, too. Of a
+    // very long sequence the first frames and the last stand for all: each costs files that are made and removed.
+    constexpr int kMostTried = 256;
     OutputSet rehearsal;
-    const std::vector<fs::path> announced = outputs.paths();
-    for (const fs::path& path : announced) rehearsal.addFile(path);
-    for (int frame = firstFrame; frame < frameCount; ++frame) FrameFiles(numberedArguments(frame), rehearsal);
-    framePaths_ = rehearsal.paths();
-    framePaths_.erase(framePaths_.begin(), framePaths_.begin() + std::ptrdiff_t(announced.size()));
+    for (const fs::path& path : outputs.paths()) rehearsal.addFile(path);
+    for (int frame = firstFrame; frame < frameCount; ++frame)
+        if (frame - firstFrame < kMostTried || frame == lastFrame_) FrameFiles(numberedArguments(frame), rehearsal);
 }
 
 FrameFileArguments SequenceFiles::numberedArguments(int frame) const {
@@ -76,6 +76,7 @@ void SequenceFiles::write(int frame, Pipeline& pipeline, const FrameInputs& inpu
         OutputSet outputs;
         const FrameFiles files(numberedArguments(frame), outputs);
         add(files.writePictures(pipeline, inputs));
+        for (const fs::path& path : outputs.paths()) framePaths_.push_back(path);
         outputs.commit();
     }
     if (film_) film_->add(pipeline.read(Output::Display).view());

@@ -37,7 +37,7 @@ public:
     /// How many values were not finite, in all frames written so far; one entry a layer.
     const std::vector<NonFiniteLayer>& nonFinite() const { return nonFinite_; }
 
-    /// Every file, those of single frames first. Before the commit of the OutputSet.
+    /// The files of single frames written so far, and those announced. Before the commit of the OutputSet.
     std::vector<std::filesystem::path> paths() const;
 
     /// Ends the film, and writes the report, if one was asked for.

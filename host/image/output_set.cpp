@@ -144,4 +144,9 @@ void OutputSet::discardAll() {
     for (OutputSet* set : allSets()) set->discard();
 }
 
+void OutputSet::discardAllForGood() {
+    mutex().lock();  // and never unlocked
+    for (OutputSet* set : allSets()) set->discard();
+}
+
 }  // namespace earthshine

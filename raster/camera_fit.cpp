@@ -20,14 +20,16 @@ double aspectOf(Extent extent) {
     return double(extent.widthPx) / extent.heightPx;
 }
 
-const SceneCamera& findCamera(const Scene& scene, std::string_view which) {
-    if (which.empty()) return scene.cameras.front();
+}  // namespace
+
+const SceneCamera* findCamera(const Scene& scene, std::string_view which) {
+    if (which.empty()) return scene.cameras.empty() ? nullptr : &scene.cameras.front();
     for (const SceneCamera& camera : scene.cameras)
-        if (camera.name == which) return camera;
+        if (camera.name == which) return &camera;
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(which.data(), which.data() + which.size(), index);
     if (error == std::errc() && end == which.data() + which.size() && index < scene.cameras.size())
-        return scene.cameras[index];
+        return &scene.cameras[index];
     std::string names;
     for (std::size_t i = 0; i < scene.cameras.size(); ++i)
         names += fmt::format("{}{} \"{}\"", i ? ", " : "", i, scene.cameras[i].name);
@@ -35,12 +37,11 @@ const SceneCamera& findCamera(const Scene& scene, std::string_view which) {
                                  names.empty() ? "none, leave it out for a view of everything" : names));
 }
 
-}  // namespace
-
 Camera cameraFor(const Scene& scene, std::string_view which, Extent extent) {
     const double aspect = aspectOf(extent);
-    if (which.empty() && scene.cameras.empty()) return defaultView(scene, extent);
-    const SceneCamera& source = findCamera(scene, which);
+    const SceneCamera* found = findCamera(scene, which);
+    if (!found) return defaultView(scene, extent);
+    const SceneCamera& source = *found;
     const double near = double(source.nearM);
     const double far = double(source.farM);
     glm::dmat4 clipFromView;

@@ -13,6 +13,9 @@ namespace earthshine::raster {
 /// no such camera, with the names of those that there are, and for an extent without pixels.
 Camera cameraFor(const Scene& scene, std::string_view which, Extent extent);
 
+/// The scene's camera that cameraFor takes; null for the default view. Throws UsageError if there is no such camera.
+const SceneCamera* findCamera(const Scene& scene, std::string_view which);
+
 /// A view that frames the bounds of the scene, from the front (+z), a little to the right and above.
 Camera defaultView(const Scene& scene, Extent extent);
 

@@ -27,8 +27,9 @@ struct Box {
     double largestCoordinate = 0.0;  ///< of world and box space
 };
 
-/// The bounds of all vertices in another space; a unit cube around the origin of the world if there are none.
-Box sceneBounds(const Scene& scene, const glm::dmat4& spaceFromWorld) {
+/// The bounds of all vertices and of `reach` in another space; a unit cube around the origin of the world if there are
+/// none.
+Box sceneBounds(const Scene& scene, std::span<const WorldBox> reach, const glm::dmat4& spaceFromWorld) {
     Box box;
     const auto add = [&](const glm::dvec3& position) {
         box.min = glm::min(box.min, position);
@@ -40,6 +41,15 @@ Box sceneBounds(const Scene& scene, const glm::dmat4& spaceFromWorld) {
             add(glm::dvec3(spaceFromObject * glm::dvec4(vertex.position, 1.0)));
         box.largestCoordinate =
             std::max(box.largestCoordinate, double(glm::length(glm::vec3(instance.worldFromObject[3]))));
+    }
+    for (const WorldBox& place : reach) {
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec3 positionWs((corner & 1) ? place.max.x : place.min.x,
+                                        (corner & 2) ? place.max.y : place.min.y,
+                                        (corner & 4) ? place.max.z : place.min.z);
+            add(glm::dvec3(spaceFromWorld * glm::dvec4(positionWs, 1.0)));
+            box.largestCoordinate = std::max(box.largestCoordinate, glm::length(positionWs));
+        }
     }
     if (!(box.min.x <= box.max.x)) {
         add(glm::dvec3(spaceFromWorld[3]) - 0.5);
@@ -58,9 +68,9 @@ glm::dmat3 rotationOf(const glm::mat4& worldFromLight) {
     return {x, glm::cross(z, x), z};
 }
 
-Camera directionalCamera(const Scene& scene, const glm::dmat3& worldFromLight) {
+Camera directionalCamera(const Scene& scene, std::span<const WorldBox> reach, const glm::dmat3& worldFromLight) {
     const glm::dmat4 lightFromWorld(glm::transpose(worldFromLight));
-    const Box box = sceneBounds(scene, lightFromWorld);
+    const Box box = sceneBounds(scene, reach, lightFromWorld);
     const glm::dvec3 margin = kMargin * (box.max - box.min) + kFloatSlack * box.largestCoordinate + kSmallestSideM;
     const glm::dvec3 half = 0.5 * (box.max - box.min) + margin;
     // The camera stands above the middle of the box, far enough that every depth is positive.
@@ -70,17 +80,17 @@ Camera directionalCamera(const Scene& scene, const glm::dmat3& worldFromLight) {
             glm::mat4(glm::ortho(-half.x, half.x, -half.y, half.y, margin.z, margin.z + 2.0 * half.z))};
 }
 
-Light directionalLight(const Scene& scene, const std::string& name, const glm::vec3& lux,
-                       const glm::dmat3& worldFromLight) {
+Light directionalLight(const Scene& scene, std::span<const WorldBox> reach, const std::string& name,
+                       const glm::vec3& lux, const glm::dmat3& worldFromLight) {
     Light light;
     light.name = name;
     light.type = LightType::Directional;
     light.intensity = lux;
-    light.camera = directionalCamera(scene, worldFromLight);
+    light.camera = directionalCamera(scene, reach, worldFromLight);
     return light;
 }
 
-Light spotLight(const Scene& scene, const SceneLight& source) {
+Light spotLight(const Scene& scene, const LightOptions& options, const SceneLight& source) {
     Light light;
     light.name = source.name;
     light.type = LightType::Spot;
@@ -92,15 +102,16 @@ Light spotLight(const Scene& scene, const SceneLight& source) {
     const glm::dmat3 rotation = rotationOf(source.worldFromLight);
     const glm::dvec3 position(source.worldFromLight[3]);
     const glm::dmat4 lightFromWorld = glm::dmat4(glm::transpose(rotation)) * glm::translate(glm::dmat4(1.0), -position);
-    const Box box = sceneBounds(scene, lightFromWorld);
+    const Box box = sceneBounds(scene, options.reach, lightFromWorld);
     double far = (1.0 + kMargin) * -box.min.z + kFloatSlack * box.largestCoordinate;
     if (source.rangeM > 0.0f) far = std::min(far, double(source.rangeM));
     far = std::max(far, kSmallestSideM);  // everything lies behind the light
     double halfAngle = double(source.outerConeAngle);
     if (halfAngle > glm::radians(kWidestConeDeg)) {
-        log(LogLevel::Warning,
-            fmt::format("light \"{}\": its cone reaches {:.1f} degrees from the axis, its map only {:.0f}", source.name,
-                        glm::degrees(halfAngle), kWidestConeDeg));
+        if (options.logs)
+            log(LogLevel::Warning,
+                fmt::format("light \"{}\": its cone reaches {:.1f} degrees from the axis, its map only {:.0f}",
+                            source.name, glm::degrees(halfAngle), kWidestConeDeg));
         halfAngle = glm::radians(kWidestConeDeg);
     }
     light.camera.viewFromWorld = glm::mat4(lightFromWorld);
@@ -122,44 +133,55 @@ glm::vec3 directionToSun(const Sun& sun) {
     return {std::sin(azimuth) * std::cos(elevation), std::sin(elevation), -std::cos(azimuth) * std::cos(elevation)};
 }
 
-Light sunLight(const Sun& sun, const Scene& scene) {
+Sun sunOf(const SceneLight& light) {
+    const glm::dvec3 toSun = rotationOf(light.worldFromLight)[2];
+    Sun sun;
+    sun.azimuthDeg = float(glm::degrees(std::atan2(toSun.x, -toSun.z)));
+    sun.elevationDeg = float(glm::degrees(std::asin(glm::clamp(toSun.y, -1.0, 1.0))));
+    sun.lux = std::max({light.intensity.r, light.intensity.g, light.intensity.b});
+    if (sun.lux > 0.0f) sun.color = light.intensity / sun.lux;
+    return sun;
+}
+
+Light sunLight(const Sun& sun, const Scene& scene, std::span<const WorldBox> reach) {
     const auto z = glm::normalize(glm::dvec3(directionToSun(sun)));
     // The map's x stays level, so that it turns with the azimuth, also for a sun in the zenith.
     const double azimuth = glm::radians(double(sun.azimuthDeg));
     const glm::dvec3 x(-std::cos(azimuth), 0.0, -std::sin(azimuth));
-    return directionalLight(scene, "sun", glm::vec3(sun.lux), {x, glm::cross(z, x), z});
+    return directionalLight(scene, reach, "sun", sun.lux * sun.color, {x, glm::cross(z, x), z});
 }
 
 std::vector<Light> fitLights(const Scene& scene, const LightOptions& options) {
     std::vector<Light> lights;
-    if (options.sun) lights.push_back(sunLight(*options.sun, scene));
+    if (options.sun) lights.push_back(sunLight(*options.sun, scene, options.reach));
     int pointLights = 0;
     for (const SceneLight& source : scene.lights) {
         switch (source.type) {
             case SceneLightType::Directional:
                 if (!options.sun)
-                    lights.push_back(
-                        directionalLight(scene, source.name, source.intensity, rotationOf(source.worldFromLight)));
+                    lights.push_back(directionalLight(scene, options.reach, source.name, source.intensity,
+                                                      rotationOf(source.worldFromLight)));
                 break;
             case SceneLightType::Spot:
-                lights.push_back(spotLight(scene, source));
+                lights.push_back(spotLight(scene, options, source));
                 break;
             case SceneLightType::Point:
                 ++pointLights;
                 break;
         }
     }
-    if (pointLights > 0)
+    if (pointLights > 0 && options.logs)
         log(LogLevel::Warning, fmt::format("{} point light{} not drawn: a light needs a direction to have a map, use "
                                            "spot lights",
                                            pointLights, pointLights == 1 ? " is" : "s are"));
     if (lights.empty()) {
         const Sun sun;
-        log(LogLevel::Info,
-            fmt::format("the scene has no light that can be drawn: a sun of {:.0f} lx shines from azimuth {:.0f}, "
-                        "elevation {:.0f} degrees",
-                        sun.lux, sun.azimuthDeg, sun.elevationDeg));
-        lights.push_back(sunLight(sun, scene));
+        if (options.logs)
+            log(LogLevel::Info,
+                fmt::format("the scene has no light that can be drawn: a sun of {:.0f} lx shines from azimuth {:.0f}, "
+                            "elevation {:.0f} degrees",
+                            sun.lux, sun.azimuthDeg, sun.elevationDeg));
+        lights.push_back(sunLight(sun, scene, options.reach));
     }
     return lights;
 }

@@ -5,9 +5,10 @@ import sys
 
 import atrium
 import cornell
+import moving
 import plates
 
-SCENES = {"atrium": atrium, "cornell": cornell, "plates": plates}
+SCENES = {"atrium": atrium, "cornell": cornell, "moving": moving, "plates": plates}
 
 
 def main(names):

@@ -178,6 +178,43 @@ class Glb:
         self.json["scenes"][0]["nodes"].append(index)
         return index
 
+    def add_animation(self, name, channels):
+        """`channels`: (node, "translation", "rotation" or "scale", times in seconds, a value for each time[, kind]).
+
+        `kind` is "LINEAR" (the default), "STEP" or "CUBICSPLINE"; that one has three values for each time: in-tangent,
+        value, out-tangent.
+        """
+        animation = {"name": name, "samplers": [], "channels": []}
+        for node, path, times, values, *kind in channels:
+            data = np.ascontiguousarray(times, dtype="<f4")
+            times_at = self._add(
+                "accessors",
+                {
+                    "bufferView": self._add_view(data.tobytes()),
+                    "componentType": FLOAT,
+                    "count": len(data),
+                    "type": "SCALAR",
+                    "min": [float(data.min())],
+                    "max": [float(data.max())],
+                },
+            )
+            data = np.ascontiguousarray(values, dtype="<f4")
+            values_at = self._add(
+                "accessors",
+                {
+                    "bufferView": self._add_view(data.tobytes()),
+                    "componentType": FLOAT,
+                    "count": len(data),
+                    "type": TYPE_OF_WIDTH[data.shape[1]],
+                },
+            )
+            sampler = {"input": times_at, "output": values_at, "interpolation": kind[0] if kind else "LINEAR"}
+            animation["channels"].append(
+                {"sampler": len(animation["samplers"]), "target": {"node": node, "path": path}}
+            )
+            animation["samplers"].append(sampler)
+        return self._add("animations", animation)
+
     def triangle_count(self):
         """Triangles drawn, over all instances."""
         per_mesh = [

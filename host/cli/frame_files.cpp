@@ -73,7 +73,8 @@ void addFrameFileOptions(Options& options, FrameFileArguments& arguments) {
 }
 
 FrameFiles::FrameFiles(const FrameFileArguments& arguments, OutputSet& outputs) : arguments_(arguments) {
-    requireEnding("--out", arguments.out, {".exr", ".png"});
+    const bool hasPicture = !arguments.out.empty();
+    if (hasPicture) requireEnding("--out", arguments.out, {".exr", ".png"});
     if (!arguments.sheet.empty()) requireEnding("--sheet", arguments.sheet, {".png"});
     if (!arguments.report.empty()) requireEnding("--report", arguments.report, {".json"});
     const auto announce = [&outputs](const fs::path& path) { return File{path, outputs.addFile(path)}; };
@@ -83,10 +84,10 @@ FrameFiles::FrameFiles(const FrameFileArguments& arguments, OutputSet& outputs) 
         if (wants("rsm-depth") || wants("rsm-normal") || wants("rsm-flux"))
             rsm_ = announce(fs::path(out).replace_extension(".rsm.exr"));
         if (wants("shadow-depth")) shadow_ = announce(fs::path(out).replace_extension(".shadow.exr"));
-    } else if (!arguments.aovs.empty()) {
+    } else if (hasPicture && !arguments.aovs.empty()) {
         throw UsageError("--aov: needs an --out that ends in .exr");
     }
-    png_ = announce(fs::path(out).replace_extension(".png"));
+    if (hasPicture) png_ = announce(fs::path(out).replace_extension(".png"));
     if (!arguments.sheet.empty()) sheet_ = announce(arguments.sheet);
     if (!arguments.report.empty()) report_ = announce(arguments.report);
 }
@@ -98,7 +99,8 @@ bool FrameFiles::wants(const char* aov) const {
 void FrameFiles::check(const FrameInputs& frame) const {
     if (wants("motion") && frame.gbuffer.motion.empty()) throw InputError("--aov: these inputs have no motion");
     if (wants("emission") && frame.gbuffer.emission.empty()) throw InputError("--aov: these inputs have no emission");
-    if ((rsm_ || shadow_) && frame.lights.empty()) throw InputError("--aov: there is no light, so no map of one");
+    const bool wantsMaps = wants("rsm-depth") || wants("rsm-normal") || wants("rsm-flux") || wants("shadow-depth");
+    if (wantsMaps && frame.lights.empty()) throw InputError("--aov: there is no light, so no map of one");
 }
 
 std::vector<NonFiniteLayer> FrameFiles::writePictures(Pipeline& pipeline, const FrameInputs& frame) const {
@@ -134,8 +136,9 @@ std::vector<NonFiniteLayer> FrameFiles::writePictures(Pipeline& pipeline, const 
             layers.add(fmt::format("light{}.shadow", i), frame.lightMaps[i].shadowDepth, kZ);
         layers.write(shadow_->temporary, shadow_->path, {}, nonFinite);
     }
+    if (!png_ && !sheet_) return nonFinite;
     const HostImage both = pipeline.read(Output::Display);
-    writePng(png_->temporary, both.view());
+    if (png_) writePng(png_->temporary, both.view());
     if (sheet_) {
         const HostImage direct = pipeline.toDisplay(pipeline.read(Output::Direct).view());
         const HostImage indirect = pipeline.toDisplay(pipeline.read(Output::Indirect).view());

@@ -13,7 +13,7 @@
 namespace earthshine::cli {
 
 struct FrameFileArguments {
-    std::string out;                ///< .exr or .png
+    std::string out;                ///< .exr or .png; "" = none
     std::string sheet;              ///< .png; "" = none
     std::string report;             ///< .json; "" = none
     std::vector<std::string> aovs;  ///< of kAovNames

@@ -20,7 +20,7 @@ void cleanUpOnSignals() {
     std::thread([signals] {
         int number = 0;
         if (sigwait(&signals, &number) != 0) return;
-        OutputSet::discardAll();
+        OutputSet::discardAllForGood();
         std::signal(number, SIG_DFL);
         pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
         std::raise(number);

@@ -1,5 +1,6 @@
 // `earthshine render`: a glTF scene through both halves, OpenGL and OpenCL, to pictures.
 
+#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
@@ -12,10 +13,11 @@
 #include "cli/raster_settings.hpp"
 #include "cli/report.hpp"
 #include "cli/scene_source.hpp"
+#include "cli/sequence.hpp"
+#include "cli/sequence_files.hpp"
 #include "earthshine/log.hpp"
 #include "image/inputs_folder.hpp"
 #include "image/json_text.hpp"
-#include "raster/camera_fit.hpp"
 #include "raster/gl/gl_context.hpp"
 #include "raster/scene_renderer.hpp"
 
@@ -29,7 +31,7 @@ struct RenderArguments {
     std::string scene;
     RasterSettings raster;
     Settings settings;
-    int frameCount = 1;
+    SequenceArguments sequence;
     int transport = 0;  ///< into kTransportNames; both are the host's memory
     DeviceArguments device;
     FrameFileArguments files;
@@ -39,7 +41,9 @@ struct RenderArguments {
 void renderScene(const RenderArguments& arguments) {
     // What can be refused is refused before anything slow is done.
     OutputSet outputs;
-    const FrameFiles files(arguments.files, outputs);
+    Sequence sequence(arguments.sequence);
+    const int frameCount = arguments.sequence.frameCount, firstFrame = arguments.sequence.firstFrame;
+    SequenceFiles files(arguments.files, arguments.sequence.film, firstFrame, frameCount, outputs);
     const auto inputsFolder =
         arguments.saveInputs.empty() ? std::filesystem::path() : outputs.addFolder(arguments.saveInputs, kInputsFile);
     validate(arguments.settings);
@@ -49,9 +53,9 @@ void renderScene(const RenderArguments& arguments) {
     const std::unique_ptr<raster::GlContext> context = raster::createContext(arguments.raster.gl);
 
     const Stopwatch load;
-    const raster::Scene scene = loadScene(arguments.scene);
-    const Camera camera = raster::cameraFor(scene, arguments.raster.camera, arguments.raster.size);
-    const std::vector<Light> lights = raster::fitLights(scene, {arguments.raster.sun});
+    raster::Scene scene = loadScene(arguments.scene);
+    sequence.begin(scene, arguments.raster);
+    const std::vector<int> movedInstances = sequence.movedInstances();
     const double loadMs = load.ms();
 
     raster::SceneRenderer renderer(*context, scene);
@@ -61,34 +65,44 @@ void renderScene(const RenderArguments& arguments) {
 
     FrameImages images;
     FrameTiming timing;
+    std::vector<Light> lights;
+    files.begin(arguments.raster.size, double(arguments.sequence.framesPerSecond));
     {
         Progress progress("rendering");
-        for (int i = 0; i < arguments.frameCount; ++i) {
-            if (i == 1) timing.clear();
+        Camera previousCamera = sequence.frame(0).camera;
+        const int warmupCount = arguments.sequence.warmupCount();
+        for (int i = -warmupCount; i < frameCount; ++i) {
+            if (i == firstFrame && i > -warmupCount) timing.clear();
             const Stopwatch whole, draw;
-            const GlFrame textures = renderer.render(camera, camera, lights,
+            const SequenceFrame& frame = sequence.frame(std::max(i, 0));
+            for (const int instance : movedInstances)
+                renderer.setWorldFromObject(instance, scene.instances[std::size_t(instance)].worldFromObject);
+            const GlFrame textures = renderer.render(frame.camera, previousCamera, frame.lights,
                                                      {arguments.raster.size, arguments.raster.rsmSizePx,
                                                       arguments.raster.shadowSizePx, arguments.raster.background});
             context->gl().Finish();
             timing.addStep("raster", draw.ms());
 
             const Stopwatch read;
-            images = readBack(textures, camera, lights, context->getProcAddress());
+            images = readBack(textures, frame.camera, frame.lights, context->getProcAddress());
             timing.addStep("read back", read.ms());
-            if (i == 0) files.check(images.inputs());
+            if (i == -warmupCount) files.check(images.inputs());
 
             const Stopwatch compute;
             pipeline.setFrame(images.inputs());
-            pipeline.run(arguments.settings, [&](double part) { progress.update((i + part) / arguments.frameCount); });
+            pipeline.run(arguments.settings,
+                         [&](double part) { progress.update((i + warmupCount + part) / (frameCount + warmupCount)); });
             timing.addStep("compute", compute.ms());
             timing.addStep("frame", whole.ms());
             timing.addStages(pipeline.stageTimes());
+            if (i >= firstFrame) files.write(i, pipeline, images.inputs());
+            previousCamera = frame.camera;
+            lights = frame.lights;
         }
     }
 
     const FrameInputs frame = images.inputs();
-    const auto paths = outputs.paths();
-    const auto nonFinite = files.writePictures(pipeline, frame);
+    const auto paths = files.paths();
     if (!inputsFolder.empty()) writeInputs(inputsFolder, frame);
 
     nlohmann::ordered_json report = {{"program", programVersion()}, {"command", "render"}};
@@ -100,11 +114,12 @@ void renderScene(const RenderArguments& arguments) {
     const raster::GlDescription& gl = context->description();
     report["gl"] = {
         {"platform", gl.platform}, {"vendor", gl.vendor}, {"renderer", gl.renderer}, {"version", gl.version}};
+    report["sequence"] = sequenceJson(arguments.sequence);
     report["transport"] = "host";
     report["loadMs"] = loadMs;
-    addFrame(report, {device, choice.why, arguments.settings, timing, arguments.frameCount, pipeline.exposure(),
-                      nonFinite, paths});
-    files.writeReport(readableJson(report));
+    addFrame(report, {device, choice.why, arguments.settings, timing, frameCount, pipeline.exposure(),
+                      files.nonFinite(), paths});
+    files.finish(readableJson(report));
     outputs.commit();
     fmt::print("scene       {}: {} triangles, {} materials, {} textures\n", arguments.scene, scene.triangleCount(),
                scene.materials.size(), scene.textures.size());
@@ -133,8 +148,7 @@ void addRender(Options& program) {
     addDeviceOptions(options, arguments->device);
     options.option("--transport", "auto|host", "auto", "how pixels get from OpenGL to OpenCL",
                    [arguments](const std::string& text) { arguments->transport = parseChoice(text, kTransportNames); });
-    options.option("--frames", "N", "1", "render this often, to time it; the first of several is not counted",
-                   [arguments](const std::string& text) { arguments->frameCount = parseInt(text, 1, 100000); });
+    addSequenceOptions(options, arguments->sequence);
 }
 
 }  // namespace earthshine::cli

@@ -61,9 +61,8 @@ void OutputSet::announce(const fs::path& path, Output& output) const {
     // A link is followed, so that its target gets replaced and not the link.
     output.resolved = fs::weakly_canonical(plain, error);
     if (error) output.resolved = plain;
-    for (const Output& other : outputs_)
-        if (other.resolved == output.resolved)
-            throw UsageError(fmt::format("{}: two outputs have this path; give each its own", path.string()));
+    if (resolved_.contains(output.resolved))
+        throw UsageError(fmt::format("{}: two outputs have this path; give each its own", path.string()));
     if (const fs::path folder = output.resolved.parent_path(); !fs::is_directory(folder, error))
         throw Error(fmt::format("{}: there is no folder {}; make it first", path.string(), folder.string()));
 }
@@ -81,6 +80,7 @@ fs::path OutputSet::addFile(const fs::path& path) {
     if (file < 0) refuse(path, "cannot be written", errno);
     ::close(file);
     outputs_.push_back(output);
+    resolved_.insert(output.resolved);
     return output.temporary;
 }
 
@@ -99,6 +99,7 @@ fs::path OutputSet::addFolder(const fs::path& path, const std::string& marker) {
     output.temporary = output.resolved.parent_path() / hiddenName(output.resolved, "tmp");
     if (!fs::create_directory(output.temporary, error)) refuse(path, "cannot be made", error.value());
     outputs_.push_back(output);
+    resolved_.insert(output.resolved);
     return output.temporary;
 }
 
@@ -120,6 +121,7 @@ void OutputSet::commit() {
             refuse(output.path, "cannot be put in place", error.value());
         }
         outputs_.erase(outputs_.begin());
+        resolved_.erase(output.resolved);
         if (!old.empty()) fs::remove_all(old, error);
     }
 }
@@ -134,10 +136,16 @@ void OutputSet::discard() noexcept {
     std::error_code ignored;
     for (const Output& output : outputs_) fs::remove_all(output.temporary, ignored);
     outputs_.clear();
+    resolved_.clear();
 }
 
 void OutputSet::discardAll() {
     const std::lock_guard lock(mutex());
+    for (OutputSet* set : allSets()) set->discard();
+}
+
+void OutputSet::discardAllForGood() {
+    mutex().lock();  // and never unlocked
     for (OutputSet* set : allSets()) set->discard();
 }
 

@@ -2,6 +2,7 @@
 // The files and folders that a command makes: they appear whole or not at all.
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -33,9 +34,12 @@ public:
     /// The paths announced, in order.
     std::vector<std::filesystem::path> paths() const;
 
-    /// Removes the temporary outputs of every set, for good; for a handler of signals that ends the process.
-    /// Thread-safe.
+    /// Removes the temporary outputs of every set, for good. Thread-safe.
     static void discardAll();
+
+    /// discardAll, after which whoever adds, commits or discards outputs waits forever, so that no new ones appear
+    /// before the process ends.
+    static void discardAllForGood();
 
 private:
     struct Output {
@@ -45,6 +49,7 @@ private:
     void discard() noexcept;
 
     std::vector<Output> outputs_;
+    std::set<std::filesystem::path> resolved_;  ///< of all outputs: a sequence has many
 };
 
 }  // namespace earthshine

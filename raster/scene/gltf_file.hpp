@@ -23,6 +23,7 @@ inline constexpr std::size_t kVertices = std::size_t(1) << 26;          ///< all
 inline constexpr std::size_t kIndices = std::size_t(1) << 27;           ///< all meshes of a scene
 inline constexpr std::size_t kInstances = std::size_t(1) << 22;         ///< many nodes may share a mesh of many parts
 inline constexpr std::size_t kElements = std::size_t(1) << 30;          ///< that accessors give, morph targets included
+inline constexpr std::size_t kAnimationKeys = std::size_t(1) << 22;     ///< all animations of a scene
 inline constexpr int kImageSidePx = 16384;                              ///< what current GPUs can hold
 inline constexpr std::size_t kImageBytes = std::size_t(1) << 30;        ///< one image, decoded
 inline constexpr std::size_t kTextureBytes = std::size_t(1) << 33;      ///< all textures of a scene, decoded

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "earthshine/error.hpp"
+#include "raster/scene/gltf_animation.hpp"
 #include "raster/scene/gltf_nodes.hpp"
 #include "raster/scene/gltf_schema.hpp"
 #include "raster/scene/gltf_validate.hpp"
@@ -101,6 +102,7 @@ Scene load(GltfFile& file, const LoadOptions& options) {
     checkReferences(document, bufferBytes, file);
 
     std::vector<tinygltf::Image> images = imagesOf(document);
+    const json animations = document.value("animations", json::array());
     tinygltf::Model model = parseModel(std::move(document), file);
     model.images = std::move(images);
     for (Bytes& bytes : buffers) model.buffers.emplace_back().data = std::move(bytes);
@@ -111,7 +113,8 @@ Scene load(GltfFile& file, const LoadOptions& options) {
     noteIgnoredExtensions(context);
     GltfMaterials materials(context);
     GltfMeshes meshes(context, materials);
-    placeNodes(context, meshes);
+    const std::vector<int> sceneNodes = placeNodes(context, meshes);
+    readAnimations(context, animations, sceneNodes);
     if (scene.materials.empty()) materials.materialOf(-1);
     computeBounds(scene);
     const glm::vec3 extent = scene.boundsMax - scene.boundsMin;

@@ -12,8 +12,8 @@ struct LoadOptions {
 };
 
 /// Loads the default scene of a .gltf or .glb file: its meshes as triangles with normals and tangents, its instances,
-/// materials, textures, lights and cameras, placed in the world. Meshes, materials and images that nothing in the scene
-/// uses are checked but not loaded.
+/// materials, textures, lights and cameras, placed in the world, and the animations of its nodes (animator.hpp plays
+/// them). Meshes, materials and images that nothing in the scene uses are checked but not loaded.
 ///
 /// Read: glTF 2.0, KHR_lights_punctual, KHR_texture_transform, KHR_materials_emissive_strength, KHR_mesh_quantization;
 /// KHR_materials_unlit and KHR_materials_pbrSpecularGlossiness are drawn as diffuse surfaces. Morph targets stand at

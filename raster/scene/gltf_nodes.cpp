@@ -3,42 +3,33 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
 #include "raster/scene/editor_markers.hpp"
+#include "raster/scene/node_transform.hpp"
 
 namespace earthshine::raster {
 
 namespace {
 
-glm::dmat4 parentFromNode(const tinygltf::Node& node) {
-    glm::dmat4 result(1.0);
-    if (!node.matrix.empty()) {
-        for (std::size_t i = 0; i < 16; ++i) result[int(i / 4)][int(i % 4)] = node.matrix[i];
-        return result;
+SceneNode nodeOf(const tinygltf::Node& from, int parent) {
+    SceneNode to;
+    to.parent = parent;
+    if (!from.matrix.empty()) {
+        to.matrix.emplace();
+        for (std::size_t i = 0; i < 16; ++i) (*to.matrix)[int(i / 4)][int(i % 4)] = from.matrix[i];
     }
-    if (!node.rotation.empty()) {
-        const glm::dquat rotation(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-        result = glm::mat4_cast(glm::normalize(rotation));
-    }
+    if (!from.rotation.empty())
+        to.rotation = glm::dquat(from.rotation[3], from.rotation[0], from.rotation[1], from.rotation[2]);
     for (int axis = 0; axis < 3; ++axis) {
-        if (!node.scale.empty()) result[axis] *= node.scale[std::size_t(axis)];
-        if (!node.translation.empty()) result[3][axis] = node.translation[std::size_t(axis)];
+        if (!from.scale.empty()) to.scale[axis] = from.scale[std::size_t(axis)];
+        if (!from.translation.empty()) to.translation[axis] = from.translation[std::size_t(axis)];
     }
-    return result;
-}
-
-bool isFinite(const glm::mat4& matrix) {
-    for (int column = 0; column < 4; ++column) {
-        for (int row = 0; row < 4; ++row) {
-            if (!std::isfinite(matrix[column][row])) return false;
-        }
-    }
-    return true;
+    return to;
 }
 
 /// Whether the matrix keeps volumes: otherwise normals have no transform. Relative to its columns, so that no scene is
@@ -48,17 +39,6 @@ bool isInvertible(const glm::dmat4& matrix) {
     const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
     constexpr double kFlat = 1e-9;
     return lengths > 1e-30 && std::abs(glm::determinant(linear)) > kFlat * lengths;
-}
-
-/// Place and direction without scale, shear or reflection: the z axis is kept, y is as near as it can be.
-std::optional<glm::mat4> rigid(const glm::dmat4& matrix) {
-    const auto unit = [](const glm::dvec3& v) { return v / glm::length(v); };
-    const glm::dvec3 z = unit(glm::dvec3(matrix[2]));
-    const glm::dvec3 x = unit(glm::cross(unit(glm::dvec3(matrix[1])), z));
-    const glm::dvec3 y = glm::cross(z, x);
-    const glm::mat4 result(glm::dmat4(glm::dvec4(x, 0.0), glm::dvec4(y, 0.0), glm::dvec4(z, 0.0), matrix[3]));
-    if (!isFinite(result)) return std::nullopt;
-    return result;
 }
 
 SceneCamera cameraOf(const tinygltf::Camera& from) {
@@ -96,31 +76,39 @@ SceneLight lightOf(const tinygltf::Light& from) {
 
 class Placer {
 public:
-    Placer(const GltfContext& context, GltfMeshes& meshes) : context_(context), meshes_(meshes) {}
+    Placer(const GltfContext& context, GltfMeshes& meshes)
+        : context_(context), meshes_(meshes), sceneNodes_(context.model.nodes.size(), -1) {}
 
     void placeTree(int root) {
         struct Pending {
             int node;
+            int parent;  // into Scene::nodes
             glm::dmat4 worldFromParent;
         };
-        std::vector<Pending> pending = {{root, glm::dmat4(1.0)}};  // a list, not recursion: any depth is fine
+        std::vector<Pending> pending = {{root, -1, glm::dmat4(1.0)}};  // a list, not recursion: any depth is fine
         while (!pending.empty()) {
             const Pending next = pending.back();
             pending.pop_back();
             const tinygltf::Node& node = context_.model.nodes[std::size_t(next.node)];
-            const glm::dmat4 worldFromNode = next.worldFromParent * parentFromNode(node);
-            placeNode(node, worldFromNode, fmt::format("nodes[{}]", next.node));
+            const SceneNode placed = nodeOf(node, next.parent);
+            const glm::dmat4 worldFromNode = next.worldFromParent * parentFromNode(placed);
+            const int index = int(context_.scene.nodes.size());
+            sceneNodes_[std::size_t(next.node)] = index;
+            context_.scene.nodes.push_back(placed);
+            placeNode(node, worldFromNode, index, fmt::format("nodes[{}]", next.node));
             for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
-                pending.push_back({*child, worldFromNode});
+                pending.push_back({*child, index, worldFromNode});
             }
         }
     }
 
+    const std::vector<int>& sceneNodes() const { return sceneNodes_; }
+
 private:
-    void placeNode(const tinygltf::Node& node, const glm::dmat4& worldFromNode, const std::string& place) {
+    void placeNode(const tinygltf::Node& node, const glm::dmat4& worldFromNode, int index, const std::string& place) {
         const glm::mat4 world(worldFromNode);
         if (!isFinite(world)) context_.file.fail(place, "its world transform is beyond what 32-bit floats hold");
-        if (node.mesh >= 0) placeMesh(node, worldFromNode, place);
+        if (node.mesh >= 0) placeMesh(node, worldFromNode, index, place);
         const auto light = node.extensions.find("KHR_lights_punctual");
         const bool hasLight = light != node.extensions.end() && light->second.Has("light");
         if (node.camera < 0 && !hasLight) return;
@@ -133,24 +121,26 @@ private:
             SceneCamera camera = cameraOf(context_.model.cameras[std::size_t(node.camera)]);
             if (camera.name.empty()) camera.name = node.name;
             camera.worldFromView = *worldFromThis;
+            camera.node = index;
             context_.scene.cameras.push_back(std::move(camera));
         }
         if (hasLight) {
-            const int index = light->second.Get("light").GetNumberAsInt();
-            SceneLight placed = lightOf(context_.model.lights[std::size_t(index)]);
+            const int source = light->second.Get("light").GetNumberAsInt();
+            SceneLight placed = lightOf(context_.model.lights[std::size_t(source)]);
             for (int i = 0; i < 3; ++i) {
                 if (!std::isfinite(placed.intensity[i])) {
-                    context_.file.fail(fmt::format("extensions.KHR_lights_punctual.lights[{}]", index),
+                    context_.file.fail(fmt::format("extensions.KHR_lights_punctual.lights[{}]", source),
                                        "its intensity is beyond what a 32-bit float holds");
                 }
             }
             if (placed.name.empty()) placed.name = node.name;
             placed.worldFromLight = *worldFromThis;
+            placed.node = index;
             context_.scene.lights.push_back(std::move(placed));
         }
     }
 
-    void placeMesh(const tinygltf::Node& node, const glm::dmat4& worldFromNode, const std::string& place) {
+    void placeMesh(const tinygltf::Node& node, const glm::dmat4& worldFromNode, int index, const std::string& place) {
         if (!isInvertible(worldFromNode)) {
             context_.note(place + ": its scale leaves no volume, and its mesh is not drawn");
             return;
@@ -165,17 +155,18 @@ private:
             context_.file.fail(place, fmt::format("the scene has more than {} instances", gltf_limits::kInstances));
         }
         for (const int mesh : parts) {
-            context_.scene.instances.push_back({mesh, glm::mat4(worldFromNode)});
+            context_.scene.instances.push_back({mesh, glm::mat4(worldFromNode), index});
         }
     }
 
     const GltfContext& context_;
     GltfMeshes& meshes_;
+    std::vector<int> sceneNodes_;
 };
 
 }  // namespace
 
-void placeNodes(const GltfContext& context, GltfMeshes& meshes) {
+std::vector<int> placeNodes(const GltfContext& context, GltfMeshes& meshes) {
     const tinygltf::Model& model = context.model;
     std::vector<int> roots;
     if (!model.scenes.empty()) {
@@ -195,6 +186,7 @@ void placeNodes(const GltfContext& context, GltfMeshes& meshes) {
     }
     Placer placer(context, meshes);
     for (const int root : roots) placer.placeTree(root);
+    return placer.sceneNodes();
 }
 
 }  // namespace earthshine::raster

@@ -81,6 +81,7 @@ constexpr const char* kAccessorTypes[] = {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT
 constexpr const char* kAlphaModes[] = {"OPAQUE", "MASK", "BLEND"};
 constexpr const char* kCameraTypes[] = {"perspective", "orthographic"};
 constexpr const char* kLightTypes[] = {"directional", "point", "spot"};
+constexpr const char* kInterpolations[] = {"LINEAR", "STEP", "CUBICSPLINE"};
 constexpr const char* kLights = "/extensions/KHR_lights_punctual/lights";
 
 constexpr Property kNoExtension[] = {{.name = "extensions", .kind = Kind::Object}};
@@ -182,6 +183,14 @@ constexpr Property kLight[] = {string("name"),         stringOf("type", kLightTy
                                numbers("color", 3, 0), number("intensity", 0),
                                number("range", 1e-9),  object("spot", kSpot)};
 constexpr Property kLightsPunctual[] = {objects("lights", kLight, true)};
+constexpr Property kAnimationTarget[] = {
+    index("node", "/nodes"), {.name = "path", .kind = Kind::String, .required = true}, kNoExtension[0]};
+constexpr Property kAnimationChannel[] = {size("sampler", 0, true, kMaxInt), object("target", kAnimationTarget, true),
+                                          kNoExtension[0]};
+constexpr Property kAnimationSampler[] = {index("input", "/accessors", true), index("output", "/accessors", true),
+                                          stringOf("interpolation", kInterpolations), kNoExtension[0]};
+constexpr Property kAnimation[] = {string("name"), objects("channels", kAnimationChannel, true, 1),
+                                   objects("samplers", kAnimationSampler, true, 1), kNoExtension[0]};
 constexpr Property kAsset[] = {{.name = "version", .kind = Kind::String, .required = true}};
 
 constexpr Property kRootExtensions[] = {object("KHR_lights_punctual", kLightsPunctual)};
@@ -201,6 +210,7 @@ constexpr Property kRoot[] = {object("asset", kAsset, true),
                               objects("images", kImage),
                               objects("samplers", kSampler),
                               objects("cameras", kCamera),
+                              objects("animations", kAnimation),
                               {.name = "skins", .kind = Kind::Objects}};
 
 class SchemaCheck {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -60,6 +62,7 @@ public:
         checkLights();
         forEach("meshes", &ReferenceCheck::checkMesh);
         forEach("nodes", &ReferenceCheck::checkNode);
+        forEach("animations", &ReferenceCheck::checkAnimation);
         checkTrees();
         forEach("scenes", &ReferenceCheck::checkScene);
     }
@@ -243,6 +246,54 @@ private:
             for (const json& element : node["rotation"]) squared += element.get<double>() * element.get<double>();
             if (!(squared > 1e-12 && squared < 1e12))
                 file_.fail(place + ".rotation", "is no rotation: its length is not 1");
+        }
+    }
+
+    /// The accessors of what is played: translation, rotation and scale of a node (glTF 2.0, 3.11).
+    void checkAnimation(const json& animation, const std::string& place) {
+        const json& channels = animation["channels"];
+        std::set<std::pair<std::uint64_t, std::string>> targets;
+        for (std::size_t i = 0; i < channels.size(); ++i) {
+            const std::string at = fmt::format("{}.channels[{}]", place, i);
+            const auto sampler = unsignedOf(channels[i], "sampler");
+            if (const std::size_t count = animation["samplers"].size(); sampler >= count)
+                file_.fail(at + ".sampler", fmt::format("is {}, but samplers has {} elements", sampler, count));
+            const json& target = channels[i]["target"];
+            const auto path = target["path"].get<std::string>();
+            const bool isRotation = path == "rotation";
+            if (!target.contains("node") || (!isRotation && path != "translation" && path != "scale")) continue;
+            const auto node = unsignedOf(target, "node");
+            if (arrayOf(document_, "nodes")[node].contains("matrix"))
+                file_.fail(at, fmt::format("animates nodes[{}], which has a matrix; it needs a {}", node, path));
+            if (!targets.emplace(node, path).second)
+                file_.fail(at, fmt::format("animates the {} of nodes[{}] a second time", path, node));
+            checkAnimationSampler(animation["samplers"][sampler], isRotation,
+                                  fmt::format("{}.samplers[{}]", place, sampler));
+        }
+    }
+
+    void checkAnimationSampler(const json& sampler, bool isRotation, const std::string& place) const {
+        const auto input = unsignedOf(sampler, "input"), output = unsignedOf(sampler, "output");
+        const json& times = arrayOf(document_, "accessors")[input];
+        const json& values = arrayOf(document_, "accessors")[output];
+        if (times["type"] != "SCALAR" || unsignedOf(times, "componentType") != kFloat)
+            file_.fail(place + ".input",
+                       fmt::format("accessors[{}] is {} of component type {}; times are SCALAR of 5126", input,
+                                   times["type"].get<std::string>(), unsignedOf(times, "componentType")));
+        const auto component = unsignedOf(values, "componentType");
+        const bool isNormalized = values.value("normalized", false) && component <= kUnsignedShort;
+        if (values["type"] != (isRotation ? "VEC4" : "VEC3") ||
+            (component != kFloat && !(isRotation && isNormalized))) {
+            file_.fail(place + ".output", fmt::format("accessors[{}] is {} of component type {}, which a {} cannot be",
+                                                      output, values["type"].get<std::string>(), component,
+                                                      isRotation ? "rotation" : "translation or scale"));
+        }
+        const bool isSpline = sampler.value("interpolation", "LINEAR") == "CUBICSPLINE";
+        const std::uint64_t keys = unsignedOf(times, "count"), count = unsignedOf(values, "count");
+        if (isSpline && keys < 2) file_.fail(place + ".input", "has one key; a CUBICSPLINE needs two");
+        if (const std::uint64_t needs = isSpline ? 3 * keys : keys; count != needs) {
+            file_.fail(place + ".output",
+                       fmt::format("accessors[{}] has {} elements, {} keys need {}", output, count, keys, needs));
         }
     }
 

@@ -12,6 +12,8 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "raster/scene/animation.hpp"
+
 namespace earthshine::raster {
 
 /// One vertex as GL draws it, object space. 72 bytes, no padding.
@@ -39,6 +41,7 @@ struct Mesh {
 struct Instance {
     int mesh = 0;
     glm::mat4 worldFromObject{1.0f};
+    int node = -1;  ///< into Scene::nodes; -1 = it has none, and stands still
 };
 
 enum class Wrap { Repeat, MirroredRepeat, ClampToEdge };
@@ -92,6 +95,7 @@ struct SceneCamera {
     float aspect = 0.0f;       ///< width / height that the file asks for; 0 = none
     float nearM = 0.1f;
     float farM = 0.0f;  ///< 0 = infinite
+    int node = -1;      ///< into Scene::nodes; -1 = it has none, and stands still
 };
 
 enum class SceneLightType { Directional, Point, Spot };
@@ -105,6 +109,7 @@ struct SceneLight {
     float outerConeAngle = 0.7853982f;
     float rangeM = 0.0f;  ///< 0 = without end
     glm::mat4 worldFromLight{1.0f};
+    int node = -1;  ///< into Scene::nodes; -1 = it has none, and stands still
 };
 
 struct Scene {
@@ -115,7 +120,9 @@ struct Scene {
     std::vector<Texture> textures;
     std::vector<SceneCamera> cameras;
     std::vector<SceneLight> lights;
-    glm::vec3 boundsMin{0.0f};  ///< world space, of all instances
+    std::vector<SceneNode> nodes;  ///< as the file places them, parents before their children
+    std::vector<Animation> animations;
+    glm::vec3 boundsMin{0.0f};  ///< world space, of all instances as the file places them
     glm::vec3 boundsMax{0.0f};
     std::vector<std::string> notes;  ///< one line for each thing in the file that is not drawn as it asks
 

@@ -29,7 +29,7 @@ void expectRefusal(const Result& result, int exitCode, const std::string& messag
 }
 
 struct Refusal {
-    Arguments arguments;  ///< "@/" becomes the test's folder, "@scene" a scene
+    Arguments arguments;  ///< "@/" becomes the test's folder, "@scene" and "@moving" a scene
     int exitCode;
     std::string message;
 };
@@ -47,6 +47,7 @@ TEST_P(Refused, InOneLineAndWithoutATrace) {
     Arguments arguments = GetParam().arguments;
     for (std::string& word : arguments) {
         if (word == "@scene") word = kScene;
+        if (word == "@moving") word = EARTHSHINE_DATA_DIR "/moving.glb";
         if (word.starts_with("@/")) word = (folder / word.substr(2)).string();
     }
     expectRefusal(runEarthshine(arguments), GetParam().exitCode, GetParam().message);
@@ -102,6 +103,34 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{{"render", "@scene", "-o", "@/a.png", "--gl", "metal"}, 2, "\"metal\""},
         Refusal{{"render", "@scene", "-o", "@/a.png", "--camera", "nobody"}, 2, "no camera \"nobody\""},
         Refusal{{"devices", "--device", "1000"}, 2, "1000"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Sequences, Refused,
+    ::testing::Values(
+        Refusal{{"render", "@scene", "-o", "@/a.png", "--frames", "4", "--first-frame", "4"},
+                2,
+                "--first-frame: 4 is beyond the last of 4 frames, 3"},
+        Refusal{{"render", "@scene", "-o", "@/a.png", "--warmup", "-1"}, 2, "--warmup: -1 is not in"},
+        Refusal{{"render", "@scene", "-o", "@/a.png", "--fps", "0"}, 2, "--fps: 0 is not in"},
+        Refusal{{"render", "@scene", "-o", "@/a.png", "--path", "circle"}, 2, "--path: 'circle' is none of orbit["},
+        Refusal{{"render", "@scene", "-o", "@/a.png", "--path", "orbit:fast"}, 2, "--path: 'fast' is not a number"},
+        Refusal{{"render", "@scene", "-o", "@/a.png", "--path", "@/no.json"}, 1, "no.json: no such file"},
+        Refusal{{"render", "@scene", "-o", "@/a.png", "--path", "animation"}, 2, "has no animation"},
+        Refusal{{"render", "@moving", "-o", "@/a.png", "--path", "animation:slide"},
+                2,
+                "--path: the animation does not move the camera \"cornell\""},
+        Refusal{{"render", "@moving", "-o", "@/a.png", "--animate", "run"},
+                2,
+                "no animation \"run\"; there is 0 \"slide\""},
+        Refusal{{"render", "@moving", "-o", "@/a.png", "--path", "animation:dolly", "--animate", "slide"},
+                2,
+                "--animate: 'slide' is not what --path animation:dolly plays"},
+        Refusal{{"render", "@scene", "-o", "@/a.png", "--sun-path", "1"}, 2, "--sun-path: '1' is neither AZIMUTH"},
+        Refusal{{"render", "@scene", "-o", "@/a.#.#.png"}, 2, "--out: '"},
+        Refusal{{"render", "@scene", "-o", "@/a.#.png", "--sheet", "@/a.0.png"}, 2, "two outputs have this path"},
+        Refusal{{"render", "@scene", "-o", "@/no/a.##.png", "--frames", "3"}, 1, "there is no folder"},
+        Refusal{{"render", "@scene", "-o", "@/a.##.png", "--aov", "depth"}, 2, "--aov: needs an --out"},
+        Refusal{{"render", "@scene", "-o", "@/a.png", "--film", "@/f.gif"}, 2, "--film: '"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Files, Refused,

@@ -210,6 +210,49 @@ TEST(RasterFit, AGivenSunStandsInForDirectionalLights) {
     EXPECT_EQ(lights[0].intensity, glm::vec3(300));
 }
 
+TEST(RasterFit, ALightsMapStaysToTheBitWhileObjectsMoveWithinReach) {
+    std::mt19937 random(5);
+    Scene scene = strewnBoxes(random, glm::vec3(0));
+    scene.lights = {sceneLight(SceneLightType::Directional, randomRotation(random)),
+                    sceneLight(SceneLightType::Spot, glm::translate(glm::mat4(1), {1, 2, 30}))};
+    const glm::mat4 placed = scene.instances[0].worldFromObject;
+    const WorldBox reach{glm::vec3(-20), glm::vec3(20)};
+    const auto fitted = [&](float x, std::span<const WorldBox> boxes) {
+        scene.instances[0].worldFromObject = glm::translate(glm::mat4(1), {x, 0, 0}) * placed;
+        return fitLights(scene, {std::nullopt, boxes});
+    };
+    const std::vector<Light> before = fitted(-8, {&reach, 1}), after = fitted(8, {&reach, 1});
+    for (int i = 0; i < 2; ++i) {
+        EXPECT_EQ(before[std::size_t(i)].camera.viewFromWorld, after[std::size_t(i)].camera.viewFromWorld);
+        EXPECT_EQ(before[std::size_t(i)].camera.clipFromView, after[std::size_t(i)].camera.clipFromView);
+    }
+    EXPECT_NE(fitted(-8, {})[0].camera.clipFromView, fitted(8, {})[0].camera.clipFromView);
+    // Nothing that is outside is lost.
+    const std::vector<Light> outside = fitted(100, {&reach, 1});
+    const auto [low, high] = ndcBounds(scene, outside[0].camera);
+    EXPECT_GE(glm::min(low.x, glm::min(low.y, low.z)), -1.0f);
+    EXPECT_LE(glm::max(high.x, glm::max(high.y, high.z)), 1.0f);
+}
+
+TEST(RasterFit, ALightAsASunShinesAlike) {
+    std::mt19937 random(9);
+    const Scene scene = strewnBoxes(random, glm::vec3(0));
+    for (int i = 0; i < 20; ++i) {
+        const SceneLight source = sceneLight(SceneLightType::Directional, randomRotation(random));
+        const Light light = sunLight(sunOf(source), scene);
+        const glm::vec3 toLight = glm::transpose(glm::mat3(light.camera.viewFromWorld)) * glm::vec3(0, 0, 1);
+        EXPECT_LT(glm::length(toLight - glm::vec3(source.worldFromLight[2])), 1e-5f);  // degrees are floats
+        EXPECT_LT(glm::length(light.intensity - source.intensity), 1e-6f);
+    }
+}
+
+TEST(RasterFit, WhatWasSaidIsNotSaidAgain) {
+    Scene scene = quadScene(diffuse(glm::vec3(0.5f)));
+    scene.lights = {sceneLight(SceneLightType::Point, glm::mat4(1))};
+    EXPECT_EQ(linesLogged([&] { fitLights(scene); }).size(), 2u);
+    EXPECT_EQ(linesLogged([&] { fitLights(scene, {std::nullopt, {}, false}); }).size(), 0u);
+}
+
 TEST(RasterFit, PointLightsAndMissingLightsAreSaid) {
     Scene scene = quadScene(diffuse(glm::vec3(0.5f)));
     scene.lights = {sceneLight(SceneLightType::Point, glm::mat4(1)), sceneLight(SceneLightType::Point, glm::mat4(1)),

@@ -103,7 +103,9 @@ nlohmann::ordered_json tracedJson(const trace::PathTracer& tracer) {
               {"light", rays.light},
               {"total", rays.total()},
               {"seconds", rays.seconds},
-              {"perSecond", rays.seconds > 0.0 ? double(rays.total()) / rays.seconds : 0.0}}}};
+              {"perSecond", rays.seconds > 0.0 ? double(rays.total()) / rays.seconds : 0.0},
+              {"cpuSeconds", rays.cpuSeconds},
+              {"perCpuSecond", rays.cpuSeconds > 0.0 ? double(rays.total()) / rays.cpuSeconds : 0.0}}}};
 }
 
 }  // namespace earthshine::cli

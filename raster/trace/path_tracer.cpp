@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <mutex>
 #include <numbers>
 #include <optional>
@@ -28,18 +29,25 @@ constexpr int kBouncesBeforeRoulette = 3;
 constexpr float kMostSurvival = 0.95f;  // so that paths end even among perfect reflectors
 
 // Pixels a side, and samples at once, of a block whose rays are traced in the order of their directions.
-constexpr int kBlockPx = 8;
+constexpr int kBlockPx = 16;
 constexpr int kBlockSamples = 16;
+// Cells of directions, by which the rays are sorted.
+constexpr std::uint32_t kCellColumns = 64, kCells = kCellColumns * kCellColumns;
+constexpr std::size_t kPathsAtOnce = 64;  // few enough to stay in the first cache
 
-/// Where in the unit square a point lies, along a curve that stays close to itself (Morton's).
-std::uint32_t cellOrder(const glm::vec2& point) {
+/// Which cell of directions a unit vector lies in: of an octahedron unfolded to a square, numbered along a curve that
+/// stays close to itself (Morton's).
+std::uint32_t cellOf(const glm::vec3& direction) {
+    const float scale = 1.0f / (std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z));
+    glm::vec2 p = glm::vec2(direction) * scale;
+    if (direction.z < 0.0f) p = {std::copysign(1.0f - std::abs(p.y), p.x), std::copysign(1.0f - std::abs(p.x), p.y)};
     const auto spread = [](float t) {
-        const auto x = std::uint32_t(t * 32.0f);
-        std::uint32_t bits = 0;
-        for (std::uint32_t b = 0; b < 5; ++b) bits |= (x >> b & 1u) << (2 * b);
-        return bits;
+        auto bits = std::min(std::uint32_t((0.5f * t + 0.5f) * float(kCellColumns)), kCellColumns - 1);
+        bits = (bits | bits << 4) & 0x0f0fu;
+        bits = (bits | bits << 2) & 0x3333u;
+        return (bits | bits << 1) & 0x5555u;
     };
-    return spread(point.x) | spread(point.y) << 1;
+    return spread(p.x) | spread(p.y) << 1;
 }
 
 /// A direction about the unit vector `normal`, as likely as its cosine.
@@ -85,10 +93,40 @@ private:
     glm::dmat4 viewFromTrace_, traceFromClip_;
 };
 
+/// One of a pixel.
+struct Sample {
+    std::uint32_t cell;  ///< of its first direction
+    int half;
+    std::size_t pixel;
+    glm::vec3 direction;  ///< first, unit
+    Sampler sampler;
+    glm::vec3 irradiance;
+};
+
+/// Where a sample has come to.
+struct Path {
+    Surface surface;
+    Hit hit;
+    bool isShaded = false;
+    glm::vec3 direction{0.0f};  ///< where it goes on, unit
+    Sampler sampler{0, 0};
+    glm::vec3 throughput{1.0f}, arriving{0.0f}, irradiance{0.0f};
+};
+
 /// What one thread needs while it traces.
 struct Work {
+    struct Shadowed {
+        Path* path;
+        glm::vec3 direction, illuminance;
+    };
     RayCount rays;
+    std::vector<Sample> samples;
+    std::vector<Sample*> ordered;
+    std::vector<Path*> active;
+    std::vector<Ray> gatherRays, shadowRays;
+    std::vector<Shadowed> shadowed;
     std::vector<Hit> hits;
+    bool blocked[kPathsAtOnce];
 };
 
 void check(const TraceSettings& s) {
@@ -134,6 +172,7 @@ struct PathTracer::Impl {
     template <class Body>
     void forEachBlock(int count, Body&& body) {
         const auto start = std::chrono::steady_clock::now();
+        const std::clock_t cpuStart = std::clock();
         std::mutex mutex;
         parallelFor(count, settings.threads, [&](int block) {
             Work work;
@@ -145,6 +184,7 @@ struct PathTracer::Impl {
             rays.light += work.rays.light;
         });
         rays.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        rays.cpuSeconds += double(std::clock() - cpuStart) / CLOCKS_PER_SEC;
     }
 
     std::size_t pixelAt(int x, int y) const {
@@ -183,38 +223,97 @@ struct PathTracer::Impl {
         return sum;
     }
 
-    /// One sample of the indirect irradiance, by a path.
-    glm::vec3 pathSample(const Surface& start, glm::vec2 random, Sampler& sampler, Work& work) const {
-        glm::vec3 irradiance(0.0f), throughput(1.0f);
-        Surface surface = start;
-        for (int bounce = 1; settings.bounceCount == kAllBounces || bounce <= settings.bounceCount; ++bounce) {
-            if (bounce > 1) random = sampler.next2();
-            const glm::vec3 direction = cosineDirection(surface.normal, random);
-            if (!(glm::dot(direction, surface.geometricNormal) > 0.0f)) break;
-            Hit hit;
-            ++work.rays.gather;
-            const Ray ray{surface.leave(direction), direction};
-            if (!scene.closest(ray, hit)) break;
-            surface = scene.surface(ray, hit);
-            surface.turnTowards(-direction);
-            bool isShaded = false;
-            const auto shade = [&] {
-                if (!std::exchange(isShaded, true)) scene.shade(hit, surface);
-            };
-            const glm::vec3 arriving = directIrradiance(surface, work, shade);
-            if (isShaded) irradiance += throughput * surface.albedo * arriving;
-            if (bounce == settings.bounceCount) break;
-            shade();
-            if (surface.normal == glm::vec3(0.0f)) break;
-            // pi from the cosine's density, and 1 / pi from the diffuse surface.
-            throughput *= surface.albedo;
-            if (settings.bounceCount == kAllBounces && bounce >= kBouncesBeforeRoulette) {
-                const float survival = std::min(std::max({throughput.r, throughput.g, throughput.b}), kMostSurvival);
-                if (!(sampler.next1() < survival)) break;
-                throughput /= survival;
+    /// Fills in the irradiance that each path brings to where it starts. Their rays are traced together, bounce by
+    /// bounce.
+    void tracePaths(std::span<Path> paths, Work& work) const {
+        work.active.clear();
+        for (Path& path : paths) work.active.push_back(&path);
+        for (int bounce = 1;
+             !work.active.empty() && (settings.bounceCount == kAllBounces || bounce <= settings.bounceCount);
+             ++bounce) {
+            gather(work);
+            light(work);
+            if (bounce != settings.bounceCount) goOn(bounce, work);
+        }
+    }
+
+    /// Sends every active path on to the surface that it meets next; those that meet none end.
+    void gather(Work& work) const {
+        work.gatherRays.clear();
+        std::size_t kept = 0;
+        for (Path* path : work.active) {
+            const glm::vec3& direction = path->direction;
+            if (!(glm::dot(direction, path->surface.geometricNormal) > 0.0f)) continue;
+            work.gatherRays.push_back({path->surface.leave(direction), direction});
+            work.active[kept++] = path;
+        }
+        work.active.resize(kept);
+        work.rays.gather += kept;
+        work.hits.resize(kept);
+        scene.closest(work.gatherRays, work.hits);
+        std::size_t met = 0;
+        for (std::size_t i = 0; i < kept; ++i) {
+            if (!work.hits[i].isFound()) continue;
+            Path& path = *work.active[i];
+            const Ray& ray = work.gatherRays[i];
+            path.hit = work.hits[i];
+            path.surface = scene.surface(ray, path.hit);
+            path.surface.turnTowards(-ray.direction);
+            path.isShaded = false;
+            work.active[met++] = &path;
+        }
+        work.active.resize(met);
+    }
+
+    /// Adds the direct light at every active path's surface. Shading is slow: only where light arrives.
+    void light(Work& work) const {
+        for (Path* path : work.active) path->arriving = glm::vec3(0.0f);
+        for (const LightSource& source : lights.all()) {
+            work.shadowRays.clear();
+            work.shadowed.clear();
+            for (Path* path : work.active) {
+                const Incident incident = source.incident(path->surface.position);
+                if (!(glm::dot(path->surface.geometricNormal, incident.direction) > 0.0f)) continue;
+                if (incident.illuminance == glm::vec3(0.0f)) continue;
+                work.shadowRays.push_back(
+                    {path->surface.leave(incident.towards), incident.towards, 0.0f, incident.tFar});
+                work.shadowed.push_back({path, incident.direction, incident.illuminance});
+            }
+            work.rays.shadow += work.shadowRays.size();
+            scene.blocksLight(work.shadowRays, std::span(work.blocked, work.shadowRays.size()));
+            for (std::size_t i = 0; i < work.shadowed.size(); ++i) {
+                if (work.blocked[i]) continue;
+                const auto& [path, direction, illuminance] = work.shadowed[i];
+                shade(*path);
+                path->arriving += illuminance * std::max(glm::dot(path->surface.normal, direction), 0.0f);
             }
         }
-        return irradiance;
+        for (Path* path : work.active)
+            if (path->isShaded) path->irradiance += path->throughput * path->surface.albedo * path->arriving;
+    }
+
+    void shade(Path& path) const {
+        if (!std::exchange(path.isShaded, true)) scene.shade(path.hit, path.surface);
+    }
+
+    /// Turns what arrives at a surface into what leaves it, and ends paths that carry little.
+    void goOn(int bounce, Work& work) const {
+        std::size_t kept = 0;
+        for (Path* path : work.active) {
+            shade(*path);
+            if (path->surface.normal == glm::vec3(0.0f)) continue;
+            // pi from the cosine's density, and 1 / pi from the diffuse surface.
+            glm::vec3& throughput = path->throughput;
+            throughput *= path->surface.albedo;
+            if (settings.bounceCount == kAllBounces && bounce >= kBouncesBeforeRoulette) {
+                const float survival = std::min(std::max({throughput.r, throughput.g, throughput.b}), kMostSurvival);
+                if (!(path->sampler.next1() < survival)) continue;
+                throughput /= survival;
+            }
+            path->direction = cosineDirection(path->surface.normal, path->sampler.next2());
+            work.active[kept++] = path;
+        }
+        work.active.resize(kept);
     }
 
     /// What the light `index` sends to x by way of y, divided by the density with which y was found.
@@ -242,7 +341,7 @@ struct PathTracer::Impl {
     }
 
     /// One sample of the indirect irradiance with nothing in the way.
-    glm::vec3 unoccludedSample(const Surface& x, const glm::vec2& onSurface, Sampler& sampler, Work& work) const {
+    glm::vec3 unoccludedSample(const Surface& x, const glm::vec3& direction, Sampler& sampler, Work& work) const {
         glm::vec3 irradiance(0.0f);
         if (lights.empty()) return irradiance;
         const std::size_t drawn = lights.draw(sampler.next1());
@@ -257,7 +356,6 @@ struct PathTracer::Impl {
             }
         }
         if (settings.strategy != Strategy::FromLight) {
-            const glm::vec3 direction = cosineDirection(x.normal, onSurface);
             ++work.rays.gather;
             const Ray ray{x.leave(direction), direction};
             scene.allHits(ray, work.hits);
@@ -274,14 +372,7 @@ struct PathTracer::Impl {
     /// need in the caches. The sums are made in the order of the samples, so that nothing depends on how many are
     /// traced at once.
     void sampleBlock(int left, int top, int first, int count, Work& work) {
-        struct Job {
-            std::uint32_t order;
-            int sample;
-            std::size_t pixel, slot;
-            glm::vec2 random;
-            Sampler sampler;
-        };
-        std::vector<Job> jobs;
+        work.samples.clear();
         const auto [width, height] = settings.extent;
         for (int y = top; y < std::min(top + kBlockPx, height); ++y)
             for (int x = left; x < std::min(left + kBlockPx, width); ++x) {
@@ -290,21 +381,43 @@ struct PathTracer::Impl {
                 for (int i = first; i < first + count; ++i) {
                     const auto sequence = hashed(std::uint32_t(2 * pixel) + std::uint32_t(i & 1), settings.seed);
                     Sampler sampler(sequence, std::uint32_t(i / 2));
-                    const glm::vec2 random = sampler.next2();
-                    jobs.push_back({cellOrder(random), i, pixel, jobs.size(), random, sampler});
+                    const glm::vec3 direction = cosineDirection(surfaces[pixel]->normal, sampler.next2());
+                    work.samples.push_back({cellOf(direction), i & 1, pixel, direction, sampler, glm::vec3(0.0f)});
                 }
             }
-        std::vector<glm::vec3> samples(jobs.size());
-        std::vector<const Job*> ordered;
-        for (const Job& job : jobs) ordered.push_back(&job);
-        std::sort(ordered.begin(), ordered.end(), [](const Job* a, const Job* b) { return a->order < b->order; });
-        for (const Job* job : ordered) {
-            Sampler sampler = job->sampler;
-            const Surface& surface = *surfaces[job->pixel];
-            samples[job->slot] = settings.indirectVisibility ? pathSample(surface, job->random, sampler, work)
-                                                             : unoccludedSample(surface, job->random, sampler, work);
+        sortByDirection(work);
+        for (std::size_t done = 0; done < work.ordered.size(); done += kPathsAtOnce) {
+            const std::size_t end = std::min(done + kPathsAtOnce, work.ordered.size());
+            traceSamples(std::span(work.ordered).subspan(done, end - done), work);
         }
-        for (const Job& job : jobs) sums.halves[job.sample & 1][job.pixel] += glm::dvec3(samples[job.slot]);
+        for (const Sample& sample : work.samples)
+            sums.halves[sample.half][sample.pixel] += glm::dvec3(sample.irradiance);
+    }
+
+    /// Fills `ordered`, by counting: there are not many cells.
+    static void sortByDirection(Work& work) {
+        std::uint32_t starts[kCells + 1] = {};
+        for (const Sample& sample : work.samples) ++starts[sample.cell + 1];
+        for (std::uint32_t cell = 0; cell < kCells; ++cell) starts[cell + 1] += starts[cell];
+        work.ordered.resize(work.samples.size());
+        for (Sample& sample : work.samples) work.ordered[starts[sample.cell]++] = &sample;
+    }
+
+    void traceSamples(std::span<Sample* const> samples, Work& work) const {
+        if (!settings.indirectVisibility) {
+            for (Sample* sample : samples)
+                sample->irradiance =
+                    unoccludedSample(*surfaces[sample->pixel], sample->direction, sample->sampler, work);
+            return;
+        }
+        Path paths[kPathsAtOnce];
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            paths[i].surface = *surfaces[samples[i]->pixel];
+            paths[i].direction = samples[i]->direction;
+            paths[i].sampler = samples[i]->sampler;
+        }
+        tracePaths(std::span(paths, samples.size()), work);
+        for (std::size_t i = 0; i < samples.size(); ++i) samples[i]->irradiance = paths[i].irradiance;
     }
 
     void addSamples(int perPixel) {

@@ -56,7 +56,8 @@ struct TraceNoise {
 /// How many rays were cast, and how long that took.
 struct RayCount {
     std::size_t camera = 0, gather = 0, shadow = 0, light = 0;
-    double seconds = 0;  ///< in addSamples, all threads together running that long
+    double seconds = 0;     ///< from the start of the work to its end, all threads at once
+    double cpuSeconds = 0;  ///< of the processor, added up over the threads
     std::size_t total() const { return camera + gather + shadow + light; }
 };
 

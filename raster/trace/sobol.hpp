@@ -29,15 +29,25 @@ constexpr std::uint32_t hashed(std::uint32_t x, std::uint32_t seed) {
     return x ^ (seed * 0x85ebca6bu + 0x6c078965u);
 }
 
-/// Owen scrambling: each bit is flipped by a hash of the bits above it.
-constexpr std::uint32_t owenScrambled(std::uint32_t x, std::uint32_t seed) {
-    x = reversedBits(x);
+/// Owen scrambling of a number whose bits are reversed: each bit is flipped by a hash of the bits below it.
+constexpr std::uint32_t owenScrambledReversed(std::uint32_t x, std::uint32_t seed) {
     x ^= x * 0x3d20adeau;
     x += seed;
     x *= (seed >> 16) | 1u;
     x ^= x * 0x05526c56u;
     x ^= x * 0x53a22864u;
-    return reversedBits(x);
+    return x;
+}
+
+/// The second dimension of the Sobol sequence, its bits reversed. Its matrix is Pascal's triangle modulo 2, which is
+/// the product of five matrices that each add (xor) every other group of 1, 2, 4, 8 or 16 bits to its neighbour.
+constexpr std::uint32_t secondSobolReversed(std::uint32_t index) {
+    index ^= (index >> 1) & 0x55555555u;
+    index ^= (index >> 2) & 0x33333333u;
+    index ^= (index >> 4) & 0x0f0f0f0fu;
+    index ^= (index >> 8) & 0x00ff00ffu;
+    index ^= (index >> 16) & 0x0000ffffu;
+    return index;
 }
 
 constexpr float unitFloat(std::uint32_t x) {
@@ -48,23 +58,21 @@ constexpr float unitFloat(std::uint32_t x) {
 /// the sample's. Every index below a power of two together are as even as can be.
 class Sampler {
 public:
-    Sampler(std::uint32_t sequence, std::uint32_t index) : sequence_(sequence), index_(index) {}
+    Sampler(std::uint32_t sequence, std::uint32_t index) : sequence_(sequence), reversedIndex_(reversedBits(index)) {}
 
     /// Two numbers in [0; 1) for the next decision.
     glm::vec2 next2() {
         const std::uint32_t seed = hashed(decision_++, sequence_);
-        const std::uint32_t index = owenScrambled(index_, seed);
-        std::uint32_t second = 0;
-        for (std::uint32_t i = index, column = 0x80000000u; i != 0; i >>= 1, column ^= column >> 1)
-            if (i & 1u) second ^= column;
-        return {unitFloat(owenScrambled(reversedBits(index), hashed(seed, 1))),
-                unitFloat(owenScrambled(second, hashed(seed, 2)))};
+        // The first dimension of the Sobol sequence is the index with its bits reversed.
+        const std::uint32_t index = reversedBits(owenScrambledReversed(reversedIndex_, seed));
+        return {unitFloat(reversedBits(owenScrambledReversed(index, hashed(seed, 1)))),
+                unitFloat(reversedBits(owenScrambledReversed(secondSobolReversed(index), hashed(seed, 2))))};
     }
 
     float next1() { return next2().x; }
 
 private:
-    std::uint32_t sequence_, index_, decision_ = 0;
+    std::uint32_t sequence_, reversedIndex_, decision_ = 0;
 };
 
 }  // namespace earthshine::trace

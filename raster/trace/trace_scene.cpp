@@ -92,6 +92,7 @@ struct TraceScene::Impl {
     std::vector<SampledTexture> textures;
     glm::dvec3 originWs{0.0};
     float offset = 0.0f;
+    bool hasStreams = false;  ///< Embree takes many rays at once; it can be built without
     std::unique_ptr<RTCDeviceTy, Release> device;
     std::unique_ptr<RTCSceneTy, Release> scene;
 
@@ -217,6 +218,7 @@ void TraceScene::Impl::addGeometry(Kind kind, std::size_t count) {
 void TraceScene::Impl::build() {
     device.reset(rtcNewDevice(nullptr));
     if (!device) throw Error(fmt::format("Embree: no device (error {})", int(rtcGetDeviceError(nullptr))));
+    hasStreams = rtcGetDeviceProperty(device.get(), RTC_DEVICE_PROPERTY_RAY_STREAM_SUPPORTED) != 0;
     scene.reset(rtcNewScene(device.get()));
     rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);  // no ray slips through a shared edge
     for (int kind = 0; kind < kKinds; ++kind) {
@@ -233,18 +235,26 @@ template <Kind kKind>
 void TraceScene::Impl::filter(const RTCFilterFunctionNArguments* arguments) {
     const auto& context = *reinterpret_cast<const Context*>(arguments->context);
     if (kKind == kPlain && context.rule != Rule::Everything) return;
-    const auto* ray = reinterpret_cast<const RTCRay*>(arguments->ray);
-    const auto* found = reinterpret_cast<const RTCHit*>(arguments->hit);
-    bool isThere = true;
-    if (isSingleSided(kKind) && context.rule != Rule::Everything) {
-        // Below 0 the ray comes from the front. A ray of Rule::Light runs against the light.
-        const float facing = ray->dir_x * found->Ng_x + ray->dir_y * found->Ng_y + ray->dir_z * found->Ng_z;
-        isThere = context.rule == Rule::Look ? facing < 0.0f : facing > 0.0f;
-    }
     const auto& impl = *static_cast<const Impl*>(arguments->geometryUserPtr);
-    if (isMasked(kKind) && isThere) isThere = !impl.isHole(found->primID, kKind, found->u, found->v);
-    if (context.hits && isThere) context.hits->push_back(impl.hitOf(*ray, *found, kKind));
-    if (context.hits || !isThere) arguments->valid[0] = 0;  // look on
+    const unsigned count = arguments->N;
+    for (unsigned i = 0; i < count; ++i) {
+        if (arguments->valid[i] == 0) continue;
+        bool isThere = true;
+        if (isSingleSided(kKind) && context.rule != Rule::Everything) {
+            // Below 0 the ray comes from the front. A ray of Rule::Light runs against the light.
+            const float facing = RTCRayN_dir_x(arguments->ray, count, i) * RTCHitN_Ng_x(arguments->hit, count, i) +
+                                 RTCRayN_dir_y(arguments->ray, count, i) * RTCHitN_Ng_y(arguments->hit, count, i) +
+                                 RTCRayN_dir_z(arguments->ray, count, i) * RTCHitN_Ng_z(arguments->hit, count, i);
+            isThere = context.rule == Rule::Look ? facing < 0.0f : facing > 0.0f;
+        }
+        if (isMasked(kKind) && isThere)
+            isThere = !impl.isHole(RTCHitN_primID(arguments->hit, count, i), kKind, RTCHitN_u(arguments->hit, count, i),
+                                   RTCHitN_v(arguments->hit, count, i));
+        if (context.hits && isThere)  // only single rays ask for all hits
+            context.hits->push_back(impl.hitOf(*reinterpret_cast<const RTCRay*>(arguments->ray),
+                                               *reinterpret_cast<const RTCHit*>(arguments->hit), kKind));
+        if (context.hits || !isThere) arguments->valid[i] = 0;  // look on
+    }
 }
 
 glm::vec4 TraceScene::Impl::read(const TextureRef& ref, const Triangle& triangle, float u, float v,
@@ -343,6 +353,9 @@ Context contextFor(Rule rule) {
     return context;
 }
 
+// Rays that are handed to Embree at once.
+constexpr std::size_t kBatch = 64;
+
 RTCRayHit nearest(RTCScene scene, Context& context, const Ray& ray) {
     RTCRayHit query{embreeRay(ray), {}};
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -372,6 +385,44 @@ bool TraceScene::blocksLight(const Ray& ray) const {
     RTCRay query = embreeRay(ray);
     rtcOccluded1(impl_->scene.get(), &context.embree, &query);
     return query.tfar < 0.0f;
+}
+
+void TraceScene::closest(std::span<const Ray> rays, std::span<Hit> hits) const {
+    Context context = contextFor(Rule::Look);
+    RTCRayHit queries[kBatch];
+    for (std::size_t first = 0; first < rays.size(); first += kBatch) {
+        const std::size_t count = std::min(kBatch, rays.size() - first);
+        for (std::size_t i = 0; i < count; ++i) {
+            queries[i].ray = embreeRay(rays[first + i]);
+            queries[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
+            queries[i].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        }
+        if (impl_->hasStreams)
+            rtcIntersect1M(impl_->scene.get(), &context.embree, queries, unsigned(count), sizeof(RTCRayHit));
+        else
+            for (std::size_t i = 0; i < count; ++i) rtcIntersect1(impl_->scene.get(), &context.embree, &queries[i]);
+        for (std::size_t i = 0; i < count; ++i) {
+            const RTCHit& found = queries[i].hit;
+            if (found.geomID == RTC_INVALID_GEOMETRY_ID)
+                hits[first + i].t = std::numeric_limits<float>::infinity();
+            else
+                hits[first + i] = impl_->hitOf(queries[i].ray, found, int(found.geomID));
+        }
+    }
+}
+
+void TraceScene::blocksLight(std::span<const Ray> rays, std::span<bool> blocked) const {
+    Context context = contextFor(Rule::Light);
+    RTCRay queries[kBatch];
+    for (std::size_t first = 0; first < rays.size(); first += kBatch) {
+        const std::size_t count = std::min(kBatch, rays.size() - first);
+        for (std::size_t i = 0; i < count; ++i) queries[i] = embreeRay(rays[first + i]);
+        if (impl_->hasStreams)
+            rtcOccluded1M(impl_->scene.get(), &context.embree, queries, unsigned(count), sizeof(RTCRay));
+        else
+            for (std::size_t i = 0; i < count; ++i) rtcOccluded1(impl_->scene.get(), &context.embree, &queries[i]);
+        for (std::size_t i = 0; i < count; ++i) blocked[first + i] = queries[i].tfar < 0.0f;
+    }
 }
 
 void TraceScene::allHits(const Ray& ray, std::vector<Hit>& hits) const {

@@ -10,6 +10,7 @@
 
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -32,6 +33,8 @@ struct Hit {
     float u = 0.0f, v = 0.0f;  ///< weights of the triangle's second and third corner
     glm::vec3 normal{0.0f};    ///< the triangle's own, towards its front, of any length
     bool isDoubleSided = false;
+
+    bool isFound() const { return t < std::numeric_limits<float>::infinity(); }
 };
 
 /// A point of a surface in trace space, and what it is made of once that was asked for (TraceScene::shade).
@@ -66,6 +69,11 @@ public:
 
     /// Whether something keeps the light at the far end of the ray from its origin.
     bool blocksLight(const Ray& ray) const;
+
+    /// The same for many rays at once, faster if neighbours in the list fly together. `hits` and `blocked` get a place
+    /// for each ray; a ray that finds nothing has a hit at infinity.
+    void closest(std::span<const Ray> rays, std::span<Hit> hits) const;
+    void blocksLight(std::span<const Ray> rays, std::span<bool> blocked) const;
 
     /// Everything along the ray, whichever side it shows, in no order. Masked-out points are not there.
     void allHits(const Ray& ray, std::vector<Hit>& hits) const;

@@ -2,6 +2,7 @@
 
 #include "raster/trace/trace_scene.hpp"
 
+#include <memory>
 #include <numbers>
 
 #include <gmock/gmock.h>
@@ -107,6 +108,31 @@ TEST(TraceScene, AllHitsFindsEverySheetOnce) {
     scene.allHits({{0.1f, 0.2f, 0.1f}, {0, 0, 1}}, hits);  // from the middle: sheets at 0.5, 1.5 and 2.5
     EXPECT_EQ(hits.size(), 3u);
     for (const Hit& hit : hits) EXPECT_GT(hit.t, 0.0f);
+}
+
+TEST(TraceScene, ManyRaysAtOnceFindWhatEachFindsAlone) {
+    // Masks, both kinds of sides; sizes about those that Embree takes together.
+    const Scene from = dataScene("atrium.glb");
+    const TraceScene scene(from);
+    for (const std::uint32_t count : {0u, 1u, 15u, 64u, 65u, 1000u}) {
+        std::vector<Ray> rays;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            Sampler sampler(count, i);
+            const glm::vec2 a = sampler.next2() - 0.5f, b = sampler.next2() - 0.5f, c = sampler.next2() - 0.5f;
+            rays.push_back({{10.0f * a.x, 4.0f * a.y, 20.0f * b.x}, {b.y, c.x, c.y}});
+        }
+        std::vector<Hit> hits(count);
+        const auto blocked = std::make_unique<bool[]>(count);
+        scene.closest(rays, hits);
+        scene.blocksLight(rays, {blocked.get(), count});
+        for (std::uint32_t i = 0; i < count; ++i) {
+            Hit hit;
+            EXPECT_EQ(hits[i].isFound(), scene.closest(rays[i], hit)) << i << " of " << count;
+            EXPECT_EQ(blocked[i], scene.blocksLight(rays[i])) << i << " of " << count;
+            if (!hits[i].isFound()) continue;
+            EXPECT_EQ(hits[i].t, hit.t) << i << " of " << count;
+        }
+    }
 }
 
 TEST(TraceScene, OffsetsClearTheSurfaceWhereverItIs) {

@@ -1,0 +1,285 @@
+// The denoiser against plain doubles at every width and storage, on every device here: temporal accumulation along
+// motion, the a-trous filter in each of its forms, and history that is dropped when the light changes.
+// What the stages start from is the picture of a pipeline that does not denoise.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "earthshine/pipeline.hpp"
+#include "reference/device_variants.hpp"
+#include "reference/frame_reference.hpp"
+#include "reference/synthetic_frame.hpp"
+
+namespace earthshine {
+namespace {
+
+using reference::SurfacePoint;
+
+// Sums of a few dozen floats whose weights hold a plane's distance, a difference of positions some 1e-6 exact.
+constexpr double kRelative = 2e-3;
+constexpr float kMotionX = 1.3f, kMotionY = -0.6f;  // px
+
+/// Two walls at an angle and another far behind, some sky: what a filter must keep apart. Lights and maps are the
+/// synthetic frame's. The walls slide along themselves by a fraction of a pixel a frame.
+FrameImages slidingWalls(Extent extent) {
+    reference::SyntheticOptions options;
+    options.extent = extent;
+    FrameImages f = reference::makeSyntheticFrame(options);
+    const glm::dmat3 worldFromView(glm::inverse(glm::dmat4(f.camera.viewFromWorld)));
+    const glm::dmat4& clip = glm::dmat4(f.camera.clipFromView);
+    HostImage normal(PixelFormat::RGBA32F, extent), motion(PixelFormat::RGBA32F, extent);
+    const auto depthAt = [&](double x, double y, const glm::dvec3& n, double distance) {
+        // The view ray at depth 1: x_ndc = p00 x - p20, with -z = 1.
+        const double xNdc = 2.0 * (x + 0.5) / extent.widthPx - 1.0, yNdc = 1.0 - 2.0 * (y + 0.5) / extent.heightPx;
+        const glm::dvec3 ray((xNdc + clip[2][0]) / clip[0][0], (yNdc + clip[2][1]) / clip[1][1], -1.0);
+        return -distance / glm::dot(n, ray);
+    };
+    for (int y = 0; y < extent.heightPx; ++y) {
+        for (int x = 0; x < extent.widthPx; ++x) {
+            float* z = f.depth.pixel(x, y);
+            *z = 0.0f;
+            if ((x * 7 + y * 13) % 29 == 0) continue;  // sky, here and there
+            const bool isLeft = 2 * x < extent.widthPx, isBehind = 4 * y < extent.heightPx;
+            const glm::dvec3 n = glm::normalize(isLeft ? glm::dvec3(0.5, 0.2, 1.0) : glm::dvec3(-0.6, 0.1, 1.0));
+            const double distance = isBehind ? 9.0 : 5.0;
+            *z = float(depthAt(x, y, n, distance));
+            const glm::dvec3 world = worldFromView * n;
+            for (int c = 0; c < 3; ++c) normal.pixel(x, y)[c] = float(world[c]);
+            normal.pixel(x, y)[3] = 1.0f;
+            motion.pixel(x, y)[0] = kMotionX;
+            motion.pixel(x, y)[1] = kMotionY;
+            motion.pixel(x, y)[2] = float(depthAt(x + double(kMotionX), y + double(kMotionY), n, distance)) - *z;
+        }
+    }
+    f.normalWs = toHalf(normal.view());
+    f.motion = toHalf(motion.view());
+    return f;
+}
+
+struct Memory {
+    std::vector<glm::dvec3> irradiance;
+    std::vector<double> length;
+};
+
+std::vector<glm::dvec3> colors(const HostImage& image) {
+    std::vector<glm::dvec3> result;
+    for (int i = 0; i < image.extent().widthPx * image.extent().heightPx; ++i) {
+        const float* p = image.pixel(0, 0) + 4 * i;
+        result.emplace_back(p[0], p[1], p[2]);
+    }
+    return result;
+}
+
+void expectNear(const HostImage& actual, const std::vector<glm::dvec3>& expected) {
+    double mean = 0.0;
+    for (const glm::dvec3& e : expected) mean += (e.x + e.y + e.z) / 3.0 / double(expected.size());
+    ASSERT_GT(mean, 0.0);
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        for (int c = 0; c < 3; ++c)
+            ASSERT_NEAR(double(actual.pixel(0, 0)[4 * int(i) + c]), expected[i][c],
+                        kRelative * (std::fabs(expected[i][c]) + mean))
+                << int(i) % actual.extent().widthPx << ", " << int(i) / actual.extent().widthPx;
+}
+
+/// temporal.cl for a camera that stands still.
+Memory accumulate(const FrameImages& f, const Memory& past, const std::vector<glm::dvec3>& now, double maxFrames) {
+    const Extent e = f.depth.extent();
+    const FrameInputs inputs = f.inputs();
+    const auto points = reference::surfacePoints(f.camera, inputs.gbuffer.normalWs, inputs.gbuffer.depth);
+    const HostImage motion = toFloat(inputs.gbuffer.motion);
+    Memory next{std::vector<glm::dvec3>(now.size(), glm::dvec3(0.0)), std::vector<double>(now.size(), 0.0)};
+    for (int y = 0; y < e.heightPx; ++y) {
+        for (int x = 0; x < e.widthPx; ++x) {
+            const auto at = std::size_t(y * e.widthPx + x);
+            if (!points[at].isValid) continue;
+            const float* m = motion.pixel(x, y);
+            const double px = x + double(m[0]), py = y + double(m[1]);
+            const double depthThen = double(*f.depth.pixel(x, y)) + double(m[2]);
+            const glm::dvec3 then =
+                reference::unproject(f.camera, {(px + 0.5) / e.widthPx, (py + 0.5) / e.heightPx}, depthThen);
+            const auto sumTaps = [&](int firstX, int firstY, int side, double looseness, auto&& weightOf) {
+                double weight = 0.0, length = 0.0;
+                glm::dvec3 sum(0.0);
+                for (int ty = firstY; ty < firstY + side; ++ty) {
+                    for (int tx = firstX; tx < firstX + side; ++tx) {
+                        if (tx < 0 || ty < 0 || tx >= e.widthPx || ty >= e.heightPx) continue;
+                        const SurfacePoint& tap = points[std::size_t(ty * e.widthPx + tx)];
+                        const glm::dvec3 n = points[at].normal;
+                        if (!tap.isValid || glm::dot(n, tap.normal) < 0.8 ||
+                            std::fabs(glm::dot(n, tap.position - then)) > looseness * 0.01 * depthThen)
+                            continue;
+                        const double w = weightOf(tx, ty);
+                        weight += w;
+                        sum += w * past.irradiance[std::size_t(ty * e.widthPx + tx)];
+                        length += w * past.length[std::size_t(ty * e.widthPx + tx)];
+                    }
+                }
+                if (weight < 0.01) return false;
+                const double frames = std::min(length / weight + 1.0, maxFrames);
+                next.length[at] = frames;
+                next.irradiance[at] = glm::mix(sum / weight, now[at], 1.0 / frames);
+                return true;
+            };
+            next.length[at] = 1.0;
+            next.irradiance[at] = now[at];
+            if (past.length.empty()) continue;
+            const bool isFound = sumTaps(int(std::floor(px)), int(std::floor(py)), 2, 1.0, [&](int tx, int ty) {
+                return (1.0 - std::fabs(tx - px)) * (1.0 - std::fabs(ty - py));
+            });
+            if (!isFound)
+                sumTaps(int(std::floor(px + 0.5)) - 1, int(std::floor(py + 0.5)) - 1, 3, 2.0,
+                        [&](int tx, int ty) { return 1.0 / (1.0 + (tx - px) * (tx - px) + (ty - py) * (ty - py)); });
+        }
+    }
+    return next;
+}
+
+/// One pass of atrous.cl without luminance and with history of one frame.
+std::vector<glm::dvec3> filterPass(const FrameImages& f, const std::vector<glm::dvec3>& in, const Settings& settings,
+                                   int radiusX, int radiusY, int step) {
+    const Extent e = f.depth.extent();
+    const FrameInputs inputs = f.inputs();
+    const auto points = reference::surfacePoints(f.camera, inputs.gbuffer.normalWs, inputs.gbuffer.depth);
+    const glm::dvec3 eye(glm::inverse(glm::dmat4(f.camera.viewFromWorld))[3]);
+    const double footprint = 2.0 / double(f.camera.clipFromView[0][0]) / e.widthPx;  // m a pixel at 1 m
+    const bool isSmall = settings.filterKernel == FilterKernel::Square3x3;
+    const auto kernel = [&](int i) {
+        return isSmall ? (i == 0 ? 0.5 : 0.25) : (i == 0 ? 0.375 : std::abs(i) == 1 ? 0.25 : 0.0625);
+    };
+    std::vector<glm::dvec3> out(in.size(), glm::dvec3(0.0));
+    for (int y = 0; y < e.heightPx; ++y) {
+        for (int x = 0; x < e.widthPx; ++x) {
+            const SurfacePoint& p = points[std::size_t(y * e.widthPx + x)];
+            if (!p.isValid) continue;
+            const double z = double(*f.depth.pixel(x, y));
+            double weights = 0.0;
+            glm::dvec3 sum(0.0);
+            for (int j = -radiusY; j <= radiusY; ++j) {
+                for (int i = -radiusX; i <= radiusX; ++i) {
+                    const int tx = x + i * step, ty = y + j * step;
+                    if (tx < 0 || ty < 0 || tx >= e.widthPx || ty >= e.heightPx) continue;
+                    const auto tap = std::size_t(ty * e.widthPx + tx);
+                    if (!points[tap].isValid) continue;
+                    const glm::dvec3 turn = points[tap].normal - p.normal;
+                    double w = 1.0;
+                    const double steps = std::hypot(i, j),
+                                 turned = glm::dot(turn, turn) / double(settings.filterNormal);
+                    if (steps > 0.0 && settings.filterWeights == FilterWeights::Plane) {
+                        const double reach = double(settings.filterDepth) * footprint * z * steps * step;
+                        const double plane = glm::dot(p.normal, points[tap].position - p.position) / reach;
+                        w = std::pow(std::max(1.0 - plane * plane - turned, 0.0), 2.0);
+                    } else if (steps > 0.0) {
+                        const double cosine = std::max(glm::dot(p.normal, glm::normalize(eye - p.position)), 0.25);
+                        const double dz = std::fabs(double(*f.depth.pixel(tx, ty)) - z);
+                        w = std::exp(-dz * cosine / (double(settings.filterDepth) * steps) - turned);
+                    }
+                    w *= (radiusX > 0 ? kernel(i) : 1.0) * (radiusY > 0 ? kernel(j) : 1.0);
+                    weights += w;
+                    sum += w * in[tap];
+                }
+            }
+            out[std::size_t(y * e.widthPx + x)] = sum / weights;
+        }
+    }
+    return out;
+}
+
+class Denoiser : public testing::TestWithParam<reference::Variant> {
+protected:
+    Device device_{GetParam().caps, GetParam().options};
+    Settings fewSamples() const {
+        Settings s;
+        s.sampleCount = 4;
+        s.antiLag = 0.0f;
+        return s;
+    }
+};
+
+TEST_P(Denoiser, HistoryFollowsMotion) {
+    const FrameImages frame = slidingWalls({53, 21});
+    Pipeline raw(device_), denoised(device_);
+    raw.setFrame(frame.inputs());
+    denoised.setFrame(frame.inputs());
+    Settings accumulating = fewSamples();
+    accumulating.accumulates = true;
+    accumulating.historyFrames = 3;
+    Memory memory;
+    for (int i = 0; i < 5; ++i) {
+        SCOPED_TRACE(testing::Message() << "frame " << i);
+        raw.run(fewSamples());
+        denoised.run(accumulating);
+        memory = accumulate(frame, memory, colors(raw.read(Output::IndirectIrradiance)), 3.0);
+        expectNear(denoised.read(Output::IndirectIrradiance), memory.irradiance);
+    }
+    denoised.forgetHistory();
+    raw.run(fewSamples());
+    denoised.run(accumulating);
+    expectNear(denoised.read(Output::IndirectIrradiance), colors(raw.read(Output::IndirectIrradiance)));
+}
+
+TEST_P(Denoiser, FiltersInEveryForm) {
+    const FrameImages frame = slidingWalls({53, 21});
+    Pipeline raw(device_);
+    raw.setFrame(frame.inputs());
+    Settings noise = fewSamples();
+    noise.animatesNoise = false;
+    raw.run(noise);
+    const std::vector<glm::dvec3> noisy = colors(raw.read(Output::IndirectIrradiance));
+    for (const FilterKernel kernel : {FilterKernel::Separable, FilterKernel::Square3x3, FilterKernel::Square5x5}) {
+        for (const FilterWeights weights : {FilterWeights::Plane, FilterWeights::Depth}) {
+            SCOPED_TRACE(testing::Message()
+                         << kFilterKernelNames[int(kernel)] << ", " << kFilterWeightsNames[int(weights)]);
+            Settings settings = noise;
+            settings.filterIterations = 2;
+            settings.filterKernel = kernel;
+            settings.filterWeights = weights;
+            std::vector<glm::dvec3> expected = noisy;
+            for (const int step : {1, 2}) {
+                if (kernel == FilterKernel::Separable) {
+                    expected = filterPass(frame, expected, settings, 2, 0, step);
+                    expected = filterPass(frame, expected, settings, 0, 2, step);
+                } else {
+                    const int radius = kernel == FilterKernel::Square3x3 ? 1 : 2;
+                    expected = filterPass(frame, expected, settings, radius, radius, step);
+                }
+            }
+            raw.run(settings);
+            expectNear(raw.read(Output::IndirectIrradiance), expected);
+        }
+    }
+}
+
+TEST_P(Denoiser, ALightThatGoesOutLeavesNoGhost) {
+    const FrameImages lit = slidingWalls({53, 37});
+    FrameImages dark = slidingWalls({53, 37});
+    std::fill_n(dark.rsmFlux.data(), dark.rsmFlux.sizeBytes(), std::byte(0));
+    const auto peakAfter = [&](float antiLag) {
+        Pipeline pipeline(device_);
+        Settings settings = fewSamples();
+        settings.accumulates = true;
+        settings.antiLag = antiLag;
+        FrameInputs inputs = lit.inputs();
+        inputs.gbuffer.motion = {};  // at rest: what moved in from the border would have no history to forget
+        pipeline.setFrame(inputs);
+        for (int i = 0; i < 16; ++i) pipeline.run(settings);
+        inputs = dark.inputs();
+        inputs.gbuffer.motion = {};
+        pipeline.setFrame(inputs);
+        for (int i = 0; i < 4; ++i) pipeline.run(settings);
+        double peak = 0.0;
+        for (const glm::dvec3& e : colors(pipeline.read(Output::IndirectIrradiance))) peak = std::max(peak, e.y);
+        return peak;
+    };
+    EXPECT_GT(peakAfter(0.0f), 0.0);
+    EXPECT_LT(peakAfter(16.0f), 0.02 * peakAfter(0.0f));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Denoiser, testing::ValuesIn(reference::quickVariants()),
+                         [](const auto& variant) { return variant.param.name; });
+
+}  // namespace
+}  // namespace earthshine

@@ -80,8 +80,7 @@ void addIndirect(Options& program) {
     options.positional("inputs", arguments->folder, "folder of inputs, as `render --save-inputs` makes it");
     addFrameFileOptions(options, arguments->files);
     options.group("Light");
-    forEachSetting(arguments->settings,
-                   [&options](const SettingInfo& info, auto& value) { addSetting(options, info, value); });
+    addLightSettings(options, arguments->settings);
     addDeviceOptions(options, arguments->device);
     options.option("--frames", "N", "1", "compute this often, to time it; the first of several is not counted",
                    [arguments](const std::string& text) { arguments->frameCount = parseInt(text, 1, 100000); });

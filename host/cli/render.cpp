@@ -143,8 +143,7 @@ void addRender(Options& program) {
     forEachRasterSetting(arguments->raster,
                          [&options](const SettingInfo& info, auto& value) { addSetting(options, info, value); });
     options.group("Light");
-    forEachSetting(arguments->settings,
-                   [&options](const SettingInfo& info, auto& value) { addSetting(options, info, value); });
+    addLightSettings(options, arguments->settings);
     addDeviceOptions(options, arguments->device);
     options.option("--transport", "auto|host", "auto", "how pixels get from OpenGL to OpenCL",
                    [arguments](const std::string& text) { arguments->transport = parseChoice(text, kTransportNames); });

@@ -34,6 +34,16 @@ void addSetting(Options& options, const SettingInfo& info, Value& value) {
     }
 }
 
+/// Adds --preset and then every setting of the light: what is given stands, and the preset sets the rest, in whatever
+/// order they are on the command line (options are read in the order in which they are added here).
+inline void addLightSettings(Options& options, Settings& settings) {
+    options.option(
+        "--preset", fmt::format("{}", fmt::join(kPresetNames, "|")), kPresetNames[0],
+        "defaults of the settings below: still is one picture from many samples, the others denoise",
+        [&settings](const std::string& text) { settings = settingsOf(Preset(parseChoice(text, kPresetNames))); });
+    forEachSetting(settings, [&options](const SettingInfo& info, auto& value) { addSetting(options, info, value); });
+}
+
 /// The value of one setting as the report shows it.
 template <class Value>
 nlohmann::ordered_json settingJson(const SettingInfo& info, const Value& value) {

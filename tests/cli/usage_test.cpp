@@ -84,6 +84,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{{"render", "@scene", "-o", "@/a.png", "--spp", "0"}, 2, "--spp: 0 is not in [1; 4096]"},
         Refusal{{"render", "@scene", "-o", "@/a.png", "--spp", "2.5"}, 2, "--spp: '2.5' is not a whole number"},
         Refusal{{"render", "@scene", "-o", "@/a.png", "--spp", "99999999999"}, 2, "--spp: 99999999999 is not in"},
+        Refusal{
+            {"render", "@scene", "-o", "@/a.png", "--preset", "best"}, 2, "--preset: 'best' is none of still, fast"},
+        Refusal{{"render", "@scene", "-o", "@/a.png", "--feedback", "2"}, 2, "feedback: history cannot remember"},
         Refusal{{"render", "@scene", "-o", "@/a.png", "--radius", "nan"}, 2, "--radius: nan is not in"},
         Refusal{{"render", "@scene", "-o", "@/a.png", "--exposure", "-inf"}, 2, "--exposure: -inf is not in"},
         Refusal{

@@ -20,6 +20,8 @@ void validate(const Settings& settings) {
                                              *info.unit ? " " : "", info.unit));
         }
     });
+    if ((settings.rsmMinify & (settings.rsmMinify - 1)) != 0)
+        throw UsageError(fmt::format("rsm-minify: {} is not 1, 2, 4 or 8", settings.rsmMinify));
 }
 
 }  // namespace earthshine

@@ -51,7 +51,7 @@ __kernel void rsm_gather(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm
         const LightParams light = lights[l];
         // The disk's centre stays on the map, wherever the point is: all that a farther centre could do is miss it.
         vfloat w = rowTimesPoint(light.wRow, positionWs);
-        vfloat scale = size / max(w, 1e-6f);
+        vfloat scale = size * params.mapScale / max(w, 1e-6f);
         vmask isAhead = w > 1e-6f;
         vfloat cx = vselect(isAhead, rowTimesPoint(light.uRow, positionWs) * scale, 0.5f * size);
         vfloat cy = vselect(isAhead, rowTimesPoint(light.vRow, positionWs) * scale, 0.5f * size);

@@ -8,6 +8,7 @@
 #include "earthshine/settings.hpp"
 #include "exposure_params.h"
 #include "rsm_gather_params.h"
+#include "rsm_pack_params.h"
 #include "rsm_sum_params.h"
 #include "tone_map_params.h"
 
@@ -25,6 +26,7 @@ struct FrameGeometry {
 /// The parameters of every stage of a frame.
 struct FrameParams {
     Estimator estimator = Estimator::Disk;
+    RsmPackParams pack{};
     RsmGatherParams gather{};
     RsmSumParams sum{};  ///< firstRowPx is each launch's own
     DirectLightParams directLight{};

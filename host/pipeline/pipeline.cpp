@@ -15,6 +15,7 @@
 #include "stages/interleave_stage.hpp"
 #include "stages/modulate_stage.hpp"
 #include "stages/rsm_gather_stage.hpp"
+#include "stages/rsm_minify_stage.hpp"
 #include "stages/rsm_pack_stage.hpp"
 #include "stages/rsm_sum_stage.hpp"
 #include "stages/tone_map_stage.hpp"
@@ -26,6 +27,7 @@ struct Pipeline::Impl {
         : device(d),
           transport(d),
           rsmPack(d),
+          rsmMinify(d),
           rsmGather(d),
           rsmSum(d),
           directLight(d),
@@ -41,6 +43,7 @@ struct Pipeline::Impl {
     Device device;
     HostTransport transport;
     RsmPackStage rsmPack;
+    RsmMinifyStage rsmMinify;
     RsmGatherStage rsmGather;
     RsmSumStage rsmSum;
     DirectLightStage directLight;
@@ -130,8 +133,8 @@ struct Pipeline::Impl {
     void sumInBands(const std::function<void(double)>& progress) {
         constexpr double kPairsPerLaunch = 5e8;
         const int groupRows = device.tuning().localSizePx[1];
-        const double pairsPerRow =
-            double(extent.widthPx) * inputs.rsm.sizePx * double(inputs.rsm.sizePx) * std::max(inputs.rsm.lightCount, 1);
+        const double pairsPerRow = double(extent.widthPx) * params.sum.rsmSizePx * double(params.sum.rsmSizePx) *
+                                   std::max(inputs.rsm.lightCount, 1);
         const int rows =
             std::max(int(std::min(kPairsPerLaunch / pairsPerRow, double(extent.heightPx))) / groupRows, 1) * groupRows;
         for (int first = 0; first < extent.heightPx; first += rows) {
@@ -224,6 +227,11 @@ void Pipeline::run(const Settings& settings, const std::function<void(double)>& 
     validate(settings);
     Impl& p = *impl_;
     if (!p.hasFrame) throw UsageError("pipeline: setFrame() comes before run()");
+    if (settings.rsmMinify > 1 && !p.device.tuning().rsmRecords)
+        throw UsageError(
+            fmt::format("rsm-minify: {} needs packed records, which are off on this device; turn "
+                        "rsm-records on",
+                        settings.rsmMinify));
     p.device.impl().launches.clear();
     p.hasRun = false;
 
@@ -232,7 +240,12 @@ void Pipeline::run(const Settings& settings, const std::function<void(double)>& 
     p.allocate();
     p.params = makeParams(settings, {makeViewRays(p.frame.camera, p.extent), p.inputs.rsm.sizePx,
                                      p.inputs.rsm.lightCount, p.inputs.shadowExtent, p.frameIndex});
-    if (p.device.tuning().rsmRecords && p.inputs.rsm.lightCount > 0) p.rsmPack.enqueue(p.inputs.rsm, p.inputs.lights);
+    if (p.device.tuning().rsmRecords && p.inputs.rsm.lightCount > 0) {
+        if (settings.rsmMinify > 1)
+            p.rsmMinify.enqueue(p.inputs.rsm, p.inputs.lights, p.params.pack);
+        else
+            p.rsmPack.enqueue(p.inputs.rsm, p.inputs.lights);
+    }
 
     p.directLight.enqueue(
         {p.inputs.normalWs, p.inputs.depth, p.inputs.shadowDepth, p.inputs.lights, p.directIrradiance},

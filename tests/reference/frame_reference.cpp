@@ -98,6 +98,42 @@ std::vector<Vpl> vpls(const Light& light, const LightMaps& maps) {
     return result;
 }
 
+std::vector<Vpl> minified(const std::vector<Vpl>& texels, int size, int factor, int lightIndex, std::uint32_t seed) {
+    const auto mix = [](std::uint32_t v) {
+        v = (v ^ (v >> 16)) * 0x7feb352du;
+        v = (v ^ (v >> 15)) * 0x846ca68bu;
+        return v ^ (v >> 16);
+    };
+    const int blocks = (size + factor - 1) / factor;
+    std::vector<Vpl> result(std::size_t(blocks) * std::size_t(blocks));
+    for (int block = 0; block < blocks * blocks; ++block) {
+        std::vector<const Vpl*> lit;
+        std::vector<double> weights;
+        double total = 0.0, area = 0.0;
+        Vpl& out = result[std::size_t(block)];
+        for (int y = block / blocks * factor; y < std::min(size, (block / blocks + 1) * factor); ++y) {
+            for (int x = block % blocks * factor; x < std::min(size, (block % blocks + 1) * factor); ++x) {
+                const Vpl& p = texels[std::size_t(y) * std::size_t(size) + std::size_t(x)];
+                const double weight = p.flux.x + p.flux.y + p.flux.z;
+                if (weight == 0.0) continue;
+                lit.push_back(&p);
+                weights.push_back(weight);
+                total += weight;
+                area += p.radius * p.radius;
+                out.flux += p.flux;
+            }
+        }
+        if (lit.empty()) continue;
+        double left = (mix(std::uint32_t(lightIndex * blocks * blocks + block) + mix(seed)) >> 8) / 16777216.0 * total;
+        std::size_t picked = 0;
+        while (picked + 1 < lit.size() && left >= weights[picked]) left -= weights[picked++];
+        out.position = lit[picked]->position;
+        out.normal = lit[picked]->normal;
+        out.radius = std::sqrt(area);
+    }
+    return result;
+}
+
 double texelGeometry(const SurfacePoint& x, const Vpl& p) {
     const glm::dvec3 d = p.position - x.position;
     const double d2 = glm::dot(d, d);
@@ -136,11 +172,11 @@ PatternMove frameMove(int index, int sampleCount) {
 }
 
 glm::dvec3 rsmDisk(const SurfacePoint& x, const std::vector<Vpl>& texels, const Light& light, int size, int count,
-                   double radiusUv, PatternMove move) {
+                   double radiusUv, PatternMove move, double mapScale) {
     glm::dvec3 sum(0.0);
     if (!x.isValid) return sum;
     glm::dvec2 centre(0.5);
-    project(light.camera, x.position, centre);
+    if (project(light.camera, x.position, centre)) centre *= mapScale;
     centre = glm::clamp(centre, glm::dvec2(0.0), glm::dvec2(1.0));
     const double pdf = 1.0 / (std::numbers::pi * radiusUv * radiusUv);  // over the unit square of the map
     for (int i = 0; i < count; ++i) {

@@ -58,6 +58,12 @@ std::vector<Check> makeChecks() {
     add("facing away", facingAway, squareView(facingAway), 16, beam, 32, fullSum(), irradiance, 0.0, parallel);
     add("behind", below, squareView(below), 16, beam, 32, fullSum(), irradiance, 0.0, parallel);
 
+    // Blocks of 8 texels, of which the emitter's edges cut off a part: 36 texels a metre.
+    Settings minified = fullSum();
+    minified.rsmMinify = 8;
+    minified.animatesNoise = false;
+    add("minified", above, squareView(above), 16, beamOnto(emitter, kLux, 10.0), 360, minified, irradiance, parallel,
+        parallel);
     // One texel on a slope of 60 degrees, seen from so near that its disc decides (disc_test.cpp).
     const double height = 0.2, side = 0.4, slope = kPi / 3.0;
     const glm::dvec3 u(1, 0, 0), v(0.0, std::sin(slope), -std::cos(slope)), centre(0.5, 0, -0.5);
@@ -145,9 +151,15 @@ constexpr Mutation kTexels[] = {
 };
 
 constexpr Mutation kOtherStages[] = {
-    {"normals half as long", "rsm_pack.cl", "* 32767.0f", "* 16383.0f"},
-    {"radius twice", "rsm_pack.cl", "* 0x1p-112f", "* 0x1p-111f"},
-    {"flux in another channel's place", "rsm_pack.cl", "record.fluxR = r.lane[i]", "record.fluxR = a.lane[i]"},
+    {"normals half as long", "common/rsm_record.clh", "* 32767.0f", "* 16383.0f"},
+    {"radius twice", "common/rsm_record.clh", "* 0x1p-112f", "* 0x1p-111f"},
+    {"flux in another channel's place", "common/rsm_record.clh", "record.fluxR = r.lane[i]",
+     "record.fluxR = a.lane[i]"},
+    {"minified flux of one texel", "rsm_minify.cl", "flux = add3(flux, f);", "flux = f;"},
+    {"minified flux of one row", "rsm_minify.cl", "int rows = min(params.minify, ", "int rows = min(1, "},
+    {"minified position of the wrong column", "rsm_minify.cl", "vselectInt(isPicked, x, pickedX)",
+     "vselectInt(isPicked, x / 2, pickedX)"},
+    {"minified texel at no depth", "rsm_minify.cl", "vselect(isPicked, depth, pickedDepth)", "pickedDepth"},
     {"radiance without 1/pi", "modulate.cl", "(vfloat)(ES_INV_PI)", "(vfloat)(1.0f)"},
     {"direct light without its cosine", "direct_light.cl", "e * max(cosine, 0.0f)", "e"},
     {"spot without its cone's square", "direct_light.cl", "cone * cone * window", "cone * window"},

@@ -28,8 +28,10 @@ struct Settings {
                                             ///< map from anywhere, less gives up energy for less noise
     bool rotates = true;                    ///< disk: blue noise turns the pattern at each pixel; off: bands, no noise
     bool animatesNoise = true;              ///< disk: each frame moves the pattern, so that frames' mean converges
-    float shadowBiasTexels = 0.5f;          ///< [0; 16] (shadow map texels) - depth bias, constant part
-    float shadowSlopeBiasTexels = 1.5f;     ///< [0; 16] (shadow map texels) - depth bias a unit of slope
+    int rsmMinify = 1;                   ///< 1, 2, 4 or 8 (RSM texels a side) - this many squared become one texel of
+                                         ///< their summed flux, before estimators read them; needs packed records
+    float shadowBiasTexels = 0.5f;       ///< [0; 16] (shadow map texels) - depth bias, constant part
+    float shadowSlopeBiasTexels = 1.5f;  ///< [0; 16] (shadow map texels) - depth bias a unit of slope
     ToneCurve toneCurve = ToneCurve::Filmic;
     bool autoExposure = true;    ///< the log-average luminance of the picture becomes mid-grey (0.18)
     float exposureStops = 0.0f;  ///< [-32; 32] (stops) - times 2^x, on top of automatic exposure if that is on
@@ -60,6 +62,9 @@ void forEachSetting(SettingsT& s, Visitor&& visit) {
     visit(SettingInfo{"animate-noise", "", 0, 1,
                       "disk: each frame turns and shifts the pattern on, for means over frames"},
           s.animatesNoise);
+    visit(SettingInfo{"rsm-minify", "RSM texels a side", 1, 8,
+                      "blocks of this many (1, 2, 4 or 8) become one texel of their summed flux"},
+          s.rsmMinify);
     visit(SettingInfo{"shadow-bias", "shadow map texels", 0, 16, "constant depth bias of the shadow test"},
           s.shadowBiasTexels);
     visit(SettingInfo{"shadow-slope-bias", "shadow map texels", 0, 16, "depth bias for each unit of slope"},

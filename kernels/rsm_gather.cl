@@ -7,12 +7,16 @@
 //   it by blue noise (Cranley & Patterson 1976), so that what few samples miss becomes fine noise instead of bands. Each
 //   frame moves all pixels' patterns on by the same step of a low-discrepancy sequence (frame_params.hpp), so that a mean
 //   over frames converges as one long pattern does, and a single frame's noise stays blue.
+//   Radii are r(u) of a uniform u, each with its pdf over the unit disk, (du/dr) / (2 pi r):
+//     area     r = sqrt(u)   1 / pdf = pi
+//     polar    r = u         1 / pdf = 2 pi u
+//     squared  r = u^2       1 / pdf = 4 pi u^3: dense where most light comes from, the usual choice of games
 //   in   inNormalWs     unit
 //   in   inDepth        m; 0 on sky
 //   in   rsm            all lights' maps below one another
 //   in   lights         LightParams
-//   in   pattern        sampleCount x (cos a, sin a, 1 / (S pdf), r^2 before its shift: s / S) in the unit disk
-//   in   noise          three planes of 64 x 64: shift of r^2 [0; 1), cosine and sine of a turn; repeats
+//   in   pattern        sampleCount x (cos a, sin a, pi / S, u before its shift: s / S) in the unit disk
+//   in   noise          three planes of 64 x 64: shift of u [0; 1), cosine and sine of a turn; repeats
 //   out  outIrradiance  lx, >= 0, finite; 0 on sky
 //   Work 2D, one item per LANES pixels of a row, any local size; items past the edge return.
 
@@ -61,8 +65,19 @@ __kernel void rsm_gather(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm
         vfloat3 sum = make3(0.0f, 0.0f, 0.0f);
         for (int s = 0; s < params.sampleCount; ++s) {
             float4 p = pattern[s];
-            vfloat r2 = p.w + shift;
-            vfloat r = params.radiusUv * size * sqrt(r2 - floor(r2));
+            vfloat u = p.w + shift;
+            u = u - floor(u);
+            vfloat unitRadius, weight = p.z;
+            if (params.mapping == MAPPING_AREA) {
+                unitRadius = sqrt(u);
+            } else if (params.mapping == MAPPING_POLAR) {
+                unitRadius = u;
+                weight *= 2.0f * u;
+            } else {
+                unitRadius = u * u;
+                weight *= 4.0f * u * unitRadius;
+            }
+            vfloat r = params.radiusUv * size * unitRadius;
             vfloat fx = vmad(r, p.x * cosTurn - p.y * sinTurn, cx);
             vfloat fy = vmad(r, p.x * sinTurn + p.y * cosTurn, cy);
             vmask isInside = (fx >= 0.0f) & (fx < size) & (fy >= 0.0f) & (fy < size);
@@ -70,7 +85,7 @@ __kernel void rsm_gather(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm
             vint y = vselectInt(isInside, toVint(fy), 0) + l * params.rsmSizePx;
             RsmTexel t = rsmGather(rsm, x, y, params.rsmSizePx, &light);
             vfloat g = texelGeometry(positionWs, normalWs, t.positionWs, t.normalWs, t.radius);
-            sum = mad3(vselect(isInside, g * p.z, 0.0f), t.flux, sum);
+            sum = mad3(vselect(isInside, g * weight, 0.0f), t.flux, sum);
         }
         // A sample at density pdf over the disk of radius r stands for r^2 / pdf of the unit square of N x N texels.
         irradiance = mad3((vfloat)(params.radiusUv * params.radiusUv * size * size * ES_INV_PI), sum, irradiance);

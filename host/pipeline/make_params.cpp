@@ -13,6 +13,7 @@ FrameParams makeParams(const Settings& settings, const FrameGeometry& frame) {
     constexpr float kMiddleGrey = 0.18f;  // what photographers and displays take for the middle
     FrameParams p;
     p.estimator = settings.estimator;
+    p.pattern = settings.pattern;
     const int frameIndex = settings.animatesNoise ? frame.frameIndex : 0;
     const int mapSizePx = minifiedSizePx(frame.rsmSizePx, settings.rsmMinify);
     p.pack = {frame.rsmSizePx, frame.lightCount, settings.rsmMinify, u32(frameIndex)};
@@ -23,6 +24,9 @@ FrameParams makeParams(const Settings& settings, const FrameGeometry& frame) {
     p.gather.sampleCount = settings.sampleCount;
     p.gather.radiusUv = settings.radiusUv;
     p.gather.rotates = settings.rotates ? 1 : 0;
+    p.gather.mapping = settings.mapping == RadiusMapping::Area    ? MAPPING_AREA
+                       : settings.mapping == RadiusMapping::Polar ? MAPPING_POLAR
+                                                                  : MAPPING_SQUARED;
     const FrameMove move = makeFrameMove(frameIndex, settings.sampleCount);
     p.gather.frameShift = float(move.shift);
     p.gather.frameTurnCos = float(std::cos(2.0 * std::numbers::pi * move.turn));

@@ -26,6 +26,7 @@ struct FrameGeometry {
 /// The parameters of every stage of a frame.
 struct FrameParams {
     Estimator estimator = Estimator::Disk;
+    DiskPattern pattern = DiskPattern::Hammersley;
     RsmPackParams pack{};
     RsmGatherParams gather{};
     RsmSumParams sum{};  ///< firstRowPx is each launch's own

@@ -59,6 +59,7 @@ struct Pipeline::Impl {
     Surface scratch;  ///< allocated by the first read that needs it
     cl::Buffer exposure, display, pixels, pattern, noise;
     int patternSize = 0;
+    DiskPattern patternKind = DiskPattern::Hammersley;
     FrameParams params;
     bool hasFrame = false, hasRun = false;
     int frameIndex = 0;
@@ -120,12 +121,13 @@ struct Pipeline::Impl {
         impl.checked("writing a table", [&] { return impl.queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, data); });
     }
 
-    void uploadPattern(int count) {
-        if (patternSize == count) return;
-        const std::vector<f32x4> points = makeDiskPattern(count);
+    void uploadPattern(int count, DiskPattern kind) {
+        if (patternSize == count && patternKind == kind) return;
+        const std::vector<f32x4> points = makeDiskPattern(count, kind);
         pattern = device.impl().makeBuffer(points.size() * sizeof(f32x4));
         write(pattern, points.data(), points.size() * sizeof(f32x4));
         patternSize = count;
+        patternKind = kind;
     }
 
     // Bands of whole groups of rows, of about this many pairs of pixel and texel: some tenths of a second on two CPU
@@ -253,7 +255,7 @@ void Pipeline::run(const Settings& settings, const std::function<void(double)>& 
     if (p.params.estimator == Estimator::Sum) {
         p.sumInBands(progress);
     } else {
-        p.uploadPattern(p.params.gather.sampleCount);
+        p.uploadPattern(p.params.gather.sampleCount, p.params.pattern);
         p.rsmGather.enqueue({p.inputs.normalWs, p.inputs.depth, p.inputs.rsm, p.inputs.lights, p.pattern, p.noise,
                              p.indirectIrradiance},
                             p.params.gather);

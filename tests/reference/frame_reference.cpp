@@ -172,24 +172,26 @@ PatternMove frameMove(int index, int sampleCount) {
 }
 
 glm::dvec3 rsmDisk(const SurfacePoint& x, const std::vector<Vpl>& texels, const Light& light, int size, int count,
-                   double radiusUv, PatternMove move, double mapScale) {
+                   double radiusUv, PatternMove move, double mapScale, DiskShape shape) {
     glm::dvec3 sum(0.0);
     if (!x.isValid) return sum;
     glm::dvec2 centre(0.5);
     if (project(light.camera, x.position, centre)) centre *= mapScale;
     centre = glm::clamp(centre, glm::dvec2(0.0), glm::dvec2(1.0));
-    const double pdf = 1.0 / (std::numbers::pi * radiusUv * radiusUv);  // over the unit square of the map
     for (int i = 0; i < count; ++i) {
         double mirrored = 0.0, place = 0.5;
         for (int bits = i; bits != 0; bits /= 2, place /= 2) mirrored += place * (bits % 2);
-        const double r = radiusUv * std::sqrt(std::fmod(double(i) / count + move.shift, 1.0));
-        const double angle = 2.0 * std::numbers::pi * (mirrored + move.turn);
+        const double u = std::fmod(double(i) / count + move.shift, 1.0);
+        const double r = radiusUv * std::pow(u, shape.power);
+        const double angle = 2.0 * std::numbers::pi * ((shape.isLine ? 0.0 : mirrored) + move.turn);
+        // Over the unit square of the map: 1 / (2 pi r) dr/du of the angle's and the radius's densities.
+        const double inversePdf = 2.0 * std::numbers::pi * r * radiusUv * shape.power * std::pow(u, shape.power - 1.0);
         const int px = int(std::floor((centre.x + r * std::cos(angle)) * size));
         const int py = int(std::floor((centre.y + r * std::sin(angle)) * size));
         if (px < 0 || py < 0 || px >= size || py >= size) continue;  // black beyond the border
         const Vpl& p = texels[std::size_t(py) * std::size_t(size) + std::size_t(px)];
         // The sum over texels is size^2 times the mean over the unit square.
-        sum += p.flux * texelGeometry(x, p) * double(size) * double(size) / (pdf * count);
+        sum += p.flux * texelGeometry(x, p) * double(size) * double(size) * inversePdf / double(count);
     }
     return sum / std::numbers::pi;
 }

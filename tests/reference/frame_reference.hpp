@@ -58,10 +58,16 @@ PatternMove patternMove(int x, int y);
 /// The further move of frame `index`: r^2 by a fraction of a sample's step, by the R2 sequence.
 PatternMove frameMove(int index, int sampleCount);
 
-/// The disk estimator with `count` Hammersley points around the projection of x, for an RSM of side `size` of which
+/// Points before their move: Hammersley's or along a line; density over radii: r = u^power.
+struct DiskShape {
+    bool isLine = false;
+    double power = 0.5;
+};
+
+/// The disk estimator with `count` points around the projection of x, for an RSM of side `size` of which
 /// the light's projection fills `mapScale` a side.
 glm::dvec3 rsmDisk(const SurfacePoint& x, const std::vector<Vpl>& texels, const Light& light, int size, int count,
-                   double radiusUv, PatternMove move, double mapScale = 1.0);
+                   double radiusUv, PatternMove move, double mapScale = 1.0, DiskShape shape = {});
 
 /// Direct irradiance of one light behind its shadow map.
 glm::dvec3 directLight(const SurfacePoint& x, const Light& light, const ImageView& shadowDepth, double biasTexels,

@@ -48,6 +48,11 @@ struct Expected {
     std::vector<glm::dvec3> direct, sum, disk;
 };
 
+reference::DiskShape shapeOf(const Settings& settings) {
+    constexpr double kPowers[] = {0.5, 1.0, 2.0};
+    return {settings.pattern == DiskPattern::Line, kPowers[int(settings.mapping)]};
+}
+
 Expected expectedOf(const FrameImages& images, const Settings& settings, int frameIndex) {
     const FrameInputs frame = images.inputs();
     Expected e;
@@ -79,9 +84,9 @@ Expected expectedOf(const FrameImages& images, const Settings& settings, int fra
                 reference::directLight(e.points[i], frame.lights[l], frame.lightMaps[l].shadowDepth,
                                        double(settings.shadowBiasTexels), double(settings.shadowSlopeBiasTexels));
             e.sum[i] += reference::rsmSum(e.points[i], texels);
-            e.disk[i] +=
-                reference::rsmDisk(e.points[i], texels, frame.lights[l], size, settings.sampleCount,
-                                   double(settings.radiusUv), moveOf(int(i) % width, int(i) / width), mapScale);
+            e.disk[i] += reference::rsmDisk(e.points[i], texels, frame.lights[l], size, settings.sampleCount,
+                                            double(settings.radiusUv), moveOf(int(i) % width, int(i) / width), mapScale,
+                                            shapeOf(settings));
         }
     }
     return e;
@@ -112,6 +117,26 @@ TEST_P(FrameStages, AgreeWithTheReference) {
         pipeline.run(settings);
         frameIndex += 2;
         expectClose(pipeline.read(Output::IndirectIrradiance), expected.sum, expected.points, kRelative);
+    }
+}
+
+TEST_P(FrameStages, AgreeWithTheReferenceOfEveryDisk) {
+    Pipeline pipeline{Device(GetParam().caps, GetParam().options)};
+    const FrameImages images = reference::makeSyntheticFrame();
+    pipeline.setFrame(images.inputs());
+    int frameIndex = 0;
+    for (const DiskPattern pattern : {DiskPattern::Hammersley, DiskPattern::Line}) {
+        for (const RadiusMapping mapping : {RadiusMapping::Area, RadiusMapping::Polar, RadiusMapping::Squared}) {
+            SCOPED_TRACE(testing::Message() << int(pattern) << ", " << int(mapping));
+            Settings settings;
+            settings.sampleCount = 13;
+            settings.radiusUv = 0.7f;
+            settings.pattern = pattern;
+            settings.mapping = mapping;
+            const Expected expected = expectedOf(images, settings, frameIndex++);
+            pipeline.run(settings);
+            expectClose(pipeline.read(Output::IndirectIrradiance), expected.disk, expected.points, kRelative);
+        }
     }
 }
 

@@ -30,6 +30,7 @@ std::vector<unsigned char> bytesOf(const FrameParams& p) {
         bytes.insert(bytes.end(), data, data + sizeof part);
     };
     append(p.estimator);
+    append(p.pattern);
     append(p.pack);
     append(p.gather);
     append(p.sum);

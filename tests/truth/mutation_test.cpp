@@ -51,6 +51,13 @@ std::vector<Check> makeChecks() {
     add("sum", above, squareView(above), 16, beam, 32, fullSum(), irradiance, parallel, parallel);
     add("disk", above, squareView(above), 32, beam, 32, wholeDisk(1024), irradiance, parallel, parallel);
     add("disk, radius 2", above, squareView(above), 32, beam, 32, wholeDisk(1024, 2.0), irradiance, parallel, parallel);
+    for (const RadiusMapping mapping : {RadiusMapping::Polar, RadiusMapping::Squared}) {
+        Settings line = wholeDisk(1024);
+        line.pattern = DiskPattern::Line;
+        line.mapping = mapping;
+        add(mapping == RadiusMapping::Polar ? "polar line" : "squared line", above, squareView(above), 64, beam, 32,
+            line, irradiance, parallel, parallel);
+    }
     add("radiance", above, squareView(above), 16, beam, 32, fullSum(), Output::Indirect, kAlbedo / kPi * parallel,
         parallel);
     // What faces away, and what lies behind the emitter.
@@ -130,10 +137,12 @@ constexpr Mutation kEstimators[] = {
     {"disk twice", "rsm_gather.cl", "* size * size * ES_INV_PI", "* size * size * 2.0f * ES_INV_PI"},
     {"disk of r, not r^2", "rsm_gather.cl", "params.radiusUv * params.radiusUv * size", "params.radiusUv * size"},
     {"disk without the map's size", "rsm_gather.cl", "* size * size * ES_INV_PI", "* ES_INV_PI"},
-    {"disk without the pattern's weight", "rsm_gather.cl", "g * p.z", "g"},
-    {"disk denser at its centre", "rsm_gather.cl", "sqrt(r2 - floor(r2))", "(r2 - floor(r2))"},
-    {"disk that does not wrap", "rsm_gather.cl", "r2 - floor(r2)", "r2"},
-    {"disk with a lit border", "rsm_gather.cl", "vselect(isInside, g * p.z, 0.0f)", "g * p.z"},
+    {"disk without the pattern's weight", "rsm_gather.cl", "g * weight", "g"},
+    {"disk denser at its centre", "rsm_gather.cl", "unitRadius = sqrt(u)", "unitRadius = u"},
+    {"disk that does not wrap", "rsm_gather.cl", "u = u - floor(u)", "u = u"},
+    {"polar disk without its pdf", "rsm_gather.cl", "weight *= 2.0f * u", "weight *= 1.0f"},
+    {"squared disk with u^2 for u^3", "rsm_gather.cl", "4.0f * u * unitRadius", "4.0f * unitRadius"},
+    {"disk with a lit border", "rsm_gather.cl", "vselect(isInside, g * weight, 0.0f)", "g * weight"},
 };
 
 constexpr Mutation kTexels[] = {

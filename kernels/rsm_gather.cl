@@ -1,6 +1,6 @@
 // rsm_gather: one-bounce irradiance from a few texels of each light's RSM, in a disk around the point's own projection.
-//   E(x) = sum_lights 1/S sum_s  Phi_p(s) / pi G(p(s), x) / pdf(s)
-//   G = max(0, n_p.(x - x_p)) max(0, n.(x_p - x)) / |x - x_p|^4, with the texel a small disc (rsm.clh)
+//   E(x) = sum_lights c/S sum_s  Phi_p(s) / pi G(p(s), x) / pdf(s)
+//   c the light's indirectScale; G = max(0, n_p.(x - x_p)) max(0, n.(x_p - x)) / |x - x_p|^4, with the texel a small disc (rsm.clh)
 //   Dachsbacher & Stamminger 2005, whose weights leave the pdf out. Ours: s lies in the disk of the given radius by the
 //   pattern's pdf, so the mean is that of the full sum for any sample count and any radius that covers the map; beyond
 //   the map's border is black, at no bias, since texels there have no flux. Each pixel shifts the pattern's radii and turns
@@ -62,6 +62,7 @@ __kernel void rsm_gather(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm
         cx = min(max(cx, 0.0f), size);
         cy = min(max(cy, 0.0f), size);
 
+        float radius = light.gatherRadiusUv > 0.0f ? light.gatherRadiusUv : params.radiusUv;
         vfloat3 sum = make3(0.0f, 0.0f, 0.0f);
         for (int s = 0; s < params.sampleCount; ++s) {
             float4 p = pattern[s];
@@ -77,7 +78,7 @@ __kernel void rsm_gather(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm
                 unitRadius = u * u;
                 weight *= 4.0f * u * unitRadius;
             }
-            vfloat r = params.radiusUv * size * unitRadius;
+            vfloat r = radius * size * unitRadius;
             vfloat fx = vmad(r, p.x * cosTurn - p.y * sinTurn, cx);
             vfloat fy = vmad(r, p.x * sinTurn + p.y * cosTurn, cy);
             vmask isInside = (fx >= 0.0f) & (fx < size) & (fy >= 0.0f) & (fy < size);
@@ -88,7 +89,7 @@ __kernel void rsm_gather(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm
             sum = mad3(vselect(isInside, g * weight, 0.0f), t.flux, sum);
         }
         // A sample at density pdf over the disk of radius r stands for r^2 / pdf of the unit square of N x N texels.
-        irradiance = mad3((vfloat)(params.radiusUv * params.radiusUv * size * size * ES_INV_PI), sum, irradiance);
+        irradiance = mad3((vfloat)(light.indirectScale * radius * radius * size * size * ES_INV_PI), sum, irradiance);
     }
     store3(outIrradiance, px, select3(isSurface, irradiance, make3(0.0f, 0.0f, 0.0f)));
 }

@@ -75,6 +75,8 @@ LightParams makeLightParams(const Light& light, Extent rsmExtent, Extent shadowE
     params.shadowTexelSize =
         float(std::max(std::fabs(2.0 * halfX / shadowExtent.widthPx), std::fabs(2.0 * halfY / shadowExtent.heightPx)));
     params.rsmTexelArea = texelPowerOnAxis(light, rsmExtent);
+    params.indirectScale = light.indirectScale;
+    params.gatherRadiusUv = light.gatherRadiusUv;
     params.rsmRays = makeViewRays(light.camera, rsmExtent);
     return params;
 }

@@ -72,6 +72,9 @@ Expected expectedOf(const FrameImages& images, const Settings& settings, int fra
         std::vector<Vpl> texels = reference::vpls(frame.lights[l], frame.lightMaps[l]);
         int size = frame.lightMaps[l].rsmDepth.extent.widthPx;
         double mapScale = 1.0;
+        const auto indirectScale = double(frame.lights[l].indirectScale);
+        const float own = frame.lights[l].gatherRadiusUv;
+        const auto radiusUv = double(own > 0.0f ? own : settings.radiusUv);
         if (const int factor = settings.rsmMinify; factor > 1) {
             texels = reference::minified(texels, size, factor, int(l),
                                          std::uint32_t(settings.animatesNoise ? frameIndex : 0));
@@ -83,10 +86,10 @@ Expected expectedOf(const FrameImages& images, const Settings& settings, int fra
             e.direct[i] +=
                 reference::directLight(e.points[i], frame.lights[l], frame.lightMaps[l].shadowDepth,
                                        double(settings.shadowBiasTexels), double(settings.shadowSlopeBiasTexels));
-            e.sum[i] += reference::rsmSum(e.points[i], texels);
-            e.disk[i] += reference::rsmDisk(e.points[i], texels, frame.lights[l], size, settings.sampleCount,
-                                            double(settings.radiusUv), moveOf(int(i) % width, int(i) / width), mapScale,
-                                            shapeOf(settings));
+            e.sum[i] += indirectScale * reference::rsmSum(e.points[i], texels);
+            e.disk[i] += indirectScale *
+                         reference::rsmDisk(e.points[i], texels, frame.lights[l], size, settings.sampleCount, radiusUv,
+                                            moveOf(int(i) % width, int(i) / width), mapScale, shapeOf(settings));
         }
     }
     return e;

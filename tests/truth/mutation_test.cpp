@@ -135,7 +135,7 @@ constexpr Mutation kEstimators[] = {
     {"sum misses two columns", "rsm_sum.cl", "x < params.rsmSizePx; ++x", "x < params.rsmSizePx - 2; ++x"},
     {"disk without 1/pi", "rsm_gather.cl", "* size * size * ES_INV_PI", "* size * size"},
     {"disk twice", "rsm_gather.cl", "* size * size * ES_INV_PI", "* size * size * 2.0f * ES_INV_PI"},
-    {"disk of r, not r^2", "rsm_gather.cl", "params.radiusUv * params.radiusUv * size", "params.radiusUv * size"},
+    {"disk of r, not r^2", "rsm_gather.cl", "radius * radius * size", "radius * size"},
     {"disk without the map's size", "rsm_gather.cl", "* size * size * ES_INV_PI", "* ES_INV_PI"},
     {"disk without the pattern's weight", "rsm_gather.cl", "g * weight", "g"},
     {"disk denser at its centre", "rsm_gather.cl", "unitRadius = sqrt(u)", "unitRadius = u"},

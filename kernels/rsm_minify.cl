@@ -43,7 +43,8 @@ __kernel void rsm_minify(SURFACE_IN(inDepth), SURFACE_IN(inNormalWs), SURFACE_IN
     if (px.x >= blocks || px.y >= blocks * params.lightCount) return;
     const LightParams light = lights[px.y / blocks];
     int firstRow = px.y % blocks * params.minify;
-    int mapRow = px.y / blocks * params.sizePx;
+    int map = px.y / blocks;
+    int mapRow = map * params.sizePx;
     int rows = min(params.minify, params.sizePx - firstRow);
     vint firstColumn = (px.x + laneIndex()) * params.minify;
 
@@ -52,7 +53,7 @@ __kernel void rsm_minify(SURFACE_IN(inDepth), SURFACE_IN(inNormalWs), SURFACE_IN
     for (int i = 0; i < rows * params.minify; ++i) {
         vint x = firstColumn + i % params.minify;
         int y = firstRow + i / params.minify;
-        vint xInside = min(x, params.sizePx - 1);
+        vint xInside = min(x, (vint)(params.sizePx - 1));
         vfloat depth = gather1(inDepth, xInside, (vint)(mapRow + y));
         vfloat3 normalWs = gather3(inNormalWs, xInside, (vint)(mapRow + y));
         vfloat3 f = gather3(inFlux, xInside, (vint)(mapRow + y));
@@ -69,18 +70,19 @@ __kernel void rsm_minify(SURFACE_IN(inDepth), SURFACE_IN(inNormalWs), SURFACE_IN
     // The last lit texel with less than a random part of the flux before it.
     vfloat threshold = blockRandom(px.y * blocks + px.x + laneIndex(), params.seed) * total;
     vfloat before = 0.0f, pickedDepth = 0.0f;
-    vint pickedX = min(firstColumn, params.sizePx - 1), pickedY = firstRow;
+    vint pickedX = min(firstColumn, (vint)(params.sizePx - 1));
+    vint pickedY = (vint)(firstRow);
     for (int i = 0; i < rows * params.minify; ++i) {
         vint x = firstColumn + i % params.minify;
         int y = firstRow + i / params.minify;
-        vint xInside = min(x, params.sizePx - 1);
+        vint xInside = min(x, (vint)(params.sizePx - 1));
         vfloat depth = gather1(inDepth, xInside, (vint)(mapRow + y));
         vfloat3 f = gather3(inFlux, xInside, (vint)(mapRow + y));
         vmask isHit = (x < params.sizePx) & (depth > 0.0f);
         vfloat weight = vselect(isHit, max(f.x, 0.0f) + max(f.y, 0.0f) + max(f.z, 0.0f), 0.0f);
         vmask isPicked = (weight > 0.0f) & (before <= threshold);
         pickedX = vselectInt(isPicked, x, pickedX);
-        pickedY = vselectInt(isPicked, y, pickedY);
+        pickedY = vselectInt(isPicked, (vint)(y), pickedY);
         pickedDepth = vselect(isPicked, depth, pickedDepth);
         before += weight;
     }

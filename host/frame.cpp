@@ -59,6 +59,9 @@ std::string faultOf(const Light& light) {
         return isSpot ? "camera: clipFromView: a spot needs a perspective projection"
                       : "camera: clipFromView: a directional light needs an orthographic projection";
     if (!(light.rangeM >= 0.0f)) return "rangeM: must not be negative; 0 is without end";
+    if (!(light.indirectScale >= 0.0f && light.indirectScale <= 1000.0f)) return "indirectScale: must be in [0; 1000]";
+    if (!(light.gatherRadiusUv >= 0.0f && light.gatherRadiusUv <= 2.0f))
+        return "gatherRadiusUv: must be in [0; 2]; 0 is the setting's radius";
     if (isSpot && !(0.0f <= light.innerConeAngle && light.innerConeAngle < light.outerConeAngle &&
                     light.outerConeAngle < std::numbers::pi_v<float> / 2))
         return "a spot needs 0 <= innerConeAngle < outerConeAngle < pi/2, in radians";

@@ -49,6 +49,8 @@ void validate(const Settings& settings) {
     if (settings.feedback > settings.filterIterations)
         throw UsageError(fmt::format("feedback: history cannot remember iteration {} of {} (filter)", settings.feedback,
                                      settings.filterIterations));
+    if ((settings.rsmMinify & (settings.rsmMinify - 1)) != 0)
+        throw UsageError(fmt::format("rsm-minify: {} is not 1, 2, 4 or 8", settings.rsmMinify));
 }
 
 }  // namespace earthshine

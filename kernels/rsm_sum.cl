@@ -1,5 +1,5 @@
 // rsm_sum: one-bounce irradiance from every texel of each light's RSM. Slow, exact: what estimators are measured against.
-//   E(x) = sum_lights sum_p Phi_p / pi G(p, x), G as in rsm_gather
+//   E(x) = sum_lights c sum_p Phi_p / pi G(p, x), G as in rsm_gather, c the light's indirectScale
 //   in   inNormalWs     unit
 //   in   inDepth        m; 0 on sky
 //   in   rsm            all lights' maps below one another
@@ -37,7 +37,7 @@ __kernel void rsm_sum(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm),
                 vfloat g = texelGeometry(positionWs, normalWs, t.positionWs, t.normalWs, t.radius);
                 row = mad3(g, t.flux, row);
             }
-            irradiance = add3(irradiance, row);
+            irradiance = mad3((vfloat)(light.indirectScale), row, irradiance);
         }
     }
     irradiance = scale3((vfloat)(ES_INV_PI), irradiance);

@@ -29,13 +29,14 @@
 //    "images": {"albedo": "albedo.exr", "normal": ..., "depth": ..., "motion": ..., "emission": ...},
 //    "lights": [{"name": "sun", "type": "directional" or "spot", "intensity": [r, g, b],
 //                "innerConeAngle": rad, "outerConeAngle": rad, "rangeM": m,
+//                "indirectScale": factor, "gatherRadiusUv": fraction of the RSM's side,
 //                "camera": {"viewFromWorld": ..., "clipFromView": ...},
 //                "rsmDepth": "rsm_0_depth.exr", "rsmNormal": ..., "rsmFlux": ..., "shadowDepth": ...}]}
 // Matrices are column by column (the translation is numbers 13 to 15), multiply column vectors, and follow frame.hpp:
 // view space is right-handed and looks along -z, NDC is OpenGL's (y up, z in [-1; 1]). viewFromWorld is rigid.
 // Intensity is in lux (directional, with an orthographic projection) or candela (spot, with a perspective one; the
-// three numbers of its cone and range, as in KHR_lights_punctual, may be left out elsewhere). "comment" may stand
-// anywhere; any other key is an error, and so is a file outside the folder.
+// three numbers of its cone and range, as in KHR_lights_punctual, may be left out elsewhere). indirectScale and
+// gatherRadiusUv may be left out: 1 and 0. "comment" may stand anywhere; any other key is an error, and so is a file outside the folder.
 
 #include <filesystem>
 

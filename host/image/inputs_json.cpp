@@ -107,8 +107,8 @@ ImageFiles readFiles(const Place& place, std::initializer_list<const char*> requ
 }
 
 Light readLight(const Place& place) {
-    place.allowOnly({"name", "type", "intensity", "innerConeAngle", "outerConeAngle", "rangeM", "camera", "rsmDepth",
-                     "rsmNormal", "rsmFlux", "shadowDepth"});
+    place.allowOnly({"name", "type", "intensity", "innerConeAngle", "outerConeAngle", "rangeM", "indirectScale",
+                     "gatherRadiusUv", "camera", "rsmDepth", "rsmNormal", "rsmFlux", "shadowDepth"});
     Light light;
     if (place.has("name")) light.name = place.at("name").text();
     const Place type = place.at("type");
@@ -123,6 +123,8 @@ Light readLight(const Place& place) {
     if (spot || place.has("outerConeAngle")) light.outerConeAngle = place.at("outerConeAngle").number();
     if (place.has("rangeM")) light.rangeM = place.at("rangeM").number();
 
+    if (place.has("indirectScale")) light.indirectScale = place.at("indirectScale").number();
+    if (place.has("gatherRadiusUv")) light.gatherRadiusUv = place.at("gatherRadiusUv").number();
     light.camera = readCamera(place.at("camera"));
     if (const std::string fault = faultOf(light); !fault.empty()) place.fail(fault);
     return light;
@@ -143,6 +145,8 @@ std::string writeDescription(const InputsDescription& description) {
                       {"innerConeAngle", light.innerConeAngle},
                       {"outerConeAngle", light.outerConeAngle},
                       {"rangeM", light.rangeM},
+                      {"indirectScale", light.indirectScale},
+                      {"gatherRadiusUv", light.gatherRadiusUv},
                       {"camera", writeCamera(light.camera)}};
         for (const auto& [key, file] : description.lightMaps[i]) entry[key] = file;
         json["lights"].push_back(std::move(entry));

@@ -19,6 +19,7 @@ void ensure(const Device& device, Surface& surface, PixelFormat format, Extent e
 IndirectPass::IndirectPass(const Device& device)
     : device_(device),
       rsmPack_(device),
+      rsmMinify_(device),
       rsmGather_(device),
       rsmSum_(device),
       temporal_(device),
@@ -46,10 +47,11 @@ void IndirectPass::allocate(Extent extent, const FrameParams& params) {
         for (Surface& surface : filtered_) ensure(device_, surface, PixelFormat::RGBA32F, extent);
 }
 
-void IndirectPass::uploadPattern(int count) {
-    if (patternSize_ == count) return;
-    pattern_ = device_.impl().upload(makeDiskPattern(count));
+void IndirectPass::uploadPattern(int count, DiskPattern kind) {
+    if (patternSize_ == count && patternKind_ == kind) return;
+    pattern_ = device_.impl().upload(makeDiskPattern(count, kind));
     patternSize_ = count;
+    patternKind_ = kind;
 }
 
 // Bands of whole groups of rows, of about this many pairs of pixel and texel: some tenths of a second on two CPU
@@ -60,7 +62,7 @@ void IndirectPass::sumInBands(const FrameSurfaces& inputs, const RsmSumParams& p
     const Extent extent = sampled_.extent();
     const int groupRows = device_.tuning().localSizePx[1];
     const double pairsPerRow =
-        double(extent.widthPx) * inputs.rsm.sizePx * double(inputs.rsm.sizePx) * std::max(inputs.rsm.lightCount, 1);
+        double(extent.widthPx) * params.rsmSizePx * double(params.rsmSizePx) * std::max(inputs.rsm.lightCount, 1);
     const int rows =
         std::max(int(std::min(kPairsPerLaunch / pairsPerRow, double(extent.heightPx))) / groupRows, 1) * groupRows;
     for (int first = 0; first < extent.heightPx; first += rows) {
@@ -77,12 +79,17 @@ void IndirectPass::sumInBands(const FrameSurfaces& inputs, const RsmSumParams& p
 
 void IndirectPass::gather(const FrameSurfaces& inputs, const FrameParams& params,
                           const std::function<void(double)>& progress) {
-    if (device_.tuning().rsmRecords && inputs.rsm.lightCount > 0) rsmPack_.enqueue(inputs.rsm, inputs.lights);
+    if (device_.tuning().rsmRecords && inputs.rsm.lightCount > 0) {
+        if (params.pack.minify > 1)
+            rsmMinify_.enqueue(inputs.rsm, inputs.lights, params.pack);
+        else
+            rsmPack_.enqueue(inputs.rsm, inputs.lights);
+    }
     if (params.estimator == Estimator::Sum) {
         sumInBands(inputs, params.sum, progress);
         return;
     }
-    uploadPattern(params.gather.sampleCount);
+    uploadPattern(params.gather.sampleCount, params.pattern);
     rsmGather_.enqueue({inputs.normalWs, inputs.depth, inputs.rsm, inputs.lights, pattern_, noise_, sampled_},
                        params.gather);
 }

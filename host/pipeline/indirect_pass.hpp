@@ -8,6 +8,7 @@
 #include "stages/atrous_stage.hpp"
 #include "stages/history_check_stage.hpp"
 #include "stages/rsm_gather_stage.hpp"
+#include "stages/rsm_minify_stage.hpp"
 #include "stages/rsm_pack_stage.hpp"
 #include "stages/rsm_sum_stage.hpp"
 #include "stages/temporal_stage.hpp"
@@ -35,7 +36,7 @@ public:
 
 private:
     void allocate(Extent extent, const FrameParams& params);
-    void uploadPattern(int count);
+    void uploadPattern(int count, DiskPattern kind);
     void gather(const FrameSurfaces& inputs, const FrameParams& params, const std::function<void(double)>& progress);
     void sumInBands(const FrameSurfaces& inputs, const RsmSumParams& params,
                     const std::function<void(double)>& progress);
@@ -43,6 +44,7 @@ private:
 
     Device device_;
     RsmPackStage rsmPack_;
+    RsmMinifyStage rsmMinify_;
     RsmGatherStage rsmGather_;
     RsmSumStage rsmSum_;
     TemporalStage temporal_;
@@ -51,6 +53,7 @@ private:
 
     cl::Buffer noise_, pattern_, confidence_;
     int patternSize_ = 0;
+    DiskPattern patternKind_ = DiskPattern::Hammersley;
     Surface sampled_;                 ///< this frame's estimate
     Surface accumulated_;             ///< temporal's output, where history takes a filtered picture instead
     Surface filtered_[2];             ///< the filter's passes in turn

@@ -10,6 +10,7 @@
 #include "exposure_params.h"
 #include "history_check_params.h"
 #include "rsm_gather_params.h"
+#include "rsm_pack_params.h"
 #include "rsm_sum_params.h"
 #include "temporal_params.h"
 #include "tone_map_params.h"
@@ -31,6 +32,8 @@ struct FrameGeometry {
 /// The parameters of every stage of a frame.
 struct FrameParams {
     Estimator estimator = Estimator::Disk;
+    DiskPattern pattern = DiskPattern::Hammersley;
+    RsmPackParams pack{};
     RsmGatherParams gather{};
     RsmSumParams sum{};         ///< firstRowPx is each launch's own
     bool denoises = false;      ///< temporal runs: it also readies a single frame for the filter

@@ -172,6 +172,11 @@ void Pipeline::run(const Settings& settings, const std::function<void(double)>& 
     validate(settings);
     Impl& p = *impl_;
     if (!p.hasFrame) throw UsageError("pipeline: setFrame() comes before run()");
+    if (settings.rsmMinify > 1 && !p.device.tuning().rsmRecords)
+        throw UsageError(
+            fmt::format("rsm-minify: {} needs packed records, which are off on this device; turn "
+                        "rsm-records on",
+                        settings.rsmMinify));
     p.device.impl().launches.clear();
     // What throws halfway leaves no history.
     const bool hadRun = std::exchange(p.hasRun, false);

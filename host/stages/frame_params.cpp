@@ -75,18 +75,20 @@ LightParams makeLightParams(const Light& light, Extent rsmExtent, Extent shadowE
     params.shadowTexelSize =
         float(std::max(std::fabs(2.0 * halfX / shadowExtent.widthPx), std::fabs(2.0 * halfY / shadowExtent.heightPx)));
     params.rsmTexelArea = texelPowerOnAxis(light, rsmExtent);
+    params.indirectScale = light.indirectScale;
+    params.gatherRadiusUv = light.gatherRadiusUv;
     params.rsmRays = makeViewRays(light.camera, rsmExtent);
     return params;
 }
 
-std::vector<f32x4> makeDiskPattern(int count) {
+std::vector<f32x4> makeDiskPattern(int count, DiskPattern kind) {
     std::vector<f32x4> pattern(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) {
         // The radical inverse in base 2: the bits of i mirrored about the point.
         double inverse = 0.0;
         for (unsigned bits = unsigned(i), place = 1; bits != 0; bits >>= 1, ++place)
             if (bits & 1u) inverse += std::ldexp(1.0, -int(place));
-        const double angle = 2.0 * std::numbers::pi * inverse;
+        const double angle = kind == DiskPattern::Line ? 0.0 : 2.0 * std::numbers::pi * inverse;
         pattern[std::size_t(i)] = {float(std::cos(angle)), float(std::sin(angle)), float(std::numbers::pi / count),
                                    float(double(i) / count)};
     }

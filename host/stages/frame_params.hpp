@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "earthshine/frame.hpp"
+#include "earthshine/settings.hpp"
 #include "light_params.h"
 #include "view_rays.h"
 
@@ -15,11 +16,11 @@ ViewRays makeViewRays(const Camera& camera, Extent extent);
 /// One light for RSMs and shadow maps of the given extents.
 LightParams makeLightParams(const Light& light, Extent rsmExtent, Extent shadowExtent);
 
-/// `count` Hammersley points in the unit disk, uniform by area: (cos a, sin a, 1 / (count pdf), r^2) with
-/// pdf = 1 / pi; r^2 goes from 0 in steps of 1 / count, and wants a shift.
-std::vector<f32x4> makeDiskPattern(int count);
+/// `count` points (cos a, sin a, pi / count, u): u, which rsm_gather maps to a radius, goes from 0 in steps of 1 /
+/// count, and wants a shift. The angles are those of Hammersley's points, or all 0: a line, which wants a turn.
+std::vector<f32x4> makeDiskPattern(int count, DiskPattern pattern = DiskPattern::Hammersley);
 
-/// How frame `index` moves the pattern of every pixel: r^2 by `shift` [0; 1 / sampleCount), all of it by `turn` [0; 1)
+/// How frame `index` moves the pattern of every pixel: u by `shift` [0; 1 / sampleCount), all of it by `turn` [0; 1)
 /// of a circle. Frame 0 stays.
 struct FrameMove {
     double shift, turn;

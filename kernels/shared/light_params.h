@@ -25,7 +25,8 @@ typedef struct LightParams {
     f32 inverseRange;          // 1/m; 0 = without end
     f32 shadowTexelSize;       // m a texel of the shadow map: directional: everywhere; spot: at 1 m of depth
     f32 rsmTexelArea;          // directional: m^2 across the beam; spot: m^2 at 1 m of depth on the axis
-    i32 padding0, padding1;
+    f32 indirectScale;         // times the light's indirect light
+    f32 gatherRadiusUv;        // [0; 2] of the map's side, of its disk; 0 = RsmGatherParams.radiusUv
     ViewRays rsmRays;
 } LightParams;
 ES_ASSERT_SIZE(LightParams, 240);

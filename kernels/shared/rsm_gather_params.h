@@ -11,17 +11,25 @@ namespace earthshine {
 
 typedef struct RsmGatherParams {
     ViewRays cameraRays;
-    i32 rsmSizePx;    // side of one light's map
+    i32 rsmSizePx;    // side of one light's map as gathered from
     i32 lightCount;   // >= 0
     i32 sampleCount;  // a light, [1; 4096]
     f32 radiusUv;     // (0; 2], fraction of the map's side
     i32 rotates;      // 0 or 1: each pixel turns and shifts the pattern by its noise
-    f32 frameShift;   // [0; 1 / sampleCount): this frame moves r^2 by it, of all pixels
+    f32 frameShift;   // [0; 1 / sampleCount): this frame moves u by it, of all pixels
     f32 frameTurnCos, frameTurnSin;  // and the pattern by this turn
+    f32 mapScale;     // (0.1; 1]: a light's projection fills this part of the map's side, less where blocks stick out
+    i32 mapping;      // MAPPING_*: from the pattern's u to radii
+    i32 padding0, padding1;
 } RsmGatherParams;
-ES_ASSERT_SIZE(RsmGatherParams, 128);
+ES_ASSERT_SIZE(RsmGatherParams, 144);
 
 #define ROTATION_NOISE_SIZE_PX 64
+
+// r of u in [0; 1), of the unit disk.
+#define MAPPING_AREA 0     // sqrt(u): uniform by area
+#define MAPPING_POLAR 1    // u: uniform by radius
+#define MAPPING_SQUARED 2  // u^2: crowded at the centre
 
 #ifndef ES_DIALECT_CL
 }  // namespace earthshine

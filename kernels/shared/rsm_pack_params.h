@@ -1,4 +1,4 @@
-// Parameters of rsm_pack.cl, and the record that it writes.
+// Parameters of rsm_pack.cl and rsm_minify.cl, and the record that they write.
 #ifndef EARTHSHINE_SHARED_RSM_PACK_PARAMS_H
 #define EARTHSHINE_SHARED_RSM_PACK_PARAMS_H
 
@@ -11,7 +11,8 @@ namespace earthshine {
 typedef struct RsmPackParams {
     i32 sizePx;      // side of one light's map
     i32 lightCount;  // maps below one another
-    i32 padding0, padding1;
+    i32 minify;      // rsm_minify: side of a block of texels, [1; 8]
+    u32 seed;        // rsm_minify: of which texel of a block is picked
 } RsmPackParams;
 ES_ASSERT_SIZE(RsmPackParams, 16);
 

@@ -95,6 +95,8 @@ Frame makeFrame() {
                         0.7f,
                         12.5f,
                         {lightView, glm::perspective(1.4f, 1.0f, 0.05f, 30.0f)}}};
+    f.inputs.lights[1].indirectScale = 1.75f;
+    f.inputs.lights[1].gatherRadiusUv = 0.3f;
     f.maps.reserve(8);
     for (int i = 0; i < 2; ++i) {
         const HostImage& depth = f.maps.emplace_back(depthImage(kRsm, numbers));
@@ -165,6 +167,8 @@ TEST_F(InputsFolder, AFrameComesBackBitForBit) {
         EXPECT_EQ(a.innerConeAngle, b.innerConeAngle);
         EXPECT_EQ(a.outerConeAngle, b.outerConeAngle);
         EXPECT_EQ(a.rangeM, b.rangeM);
+        EXPECT_EQ(a.indirectScale, b.indirectScale);
+        EXPECT_EQ(a.gatherRadiusUv, b.gatherRadiusUv);
         EXPECT_TRUE(same(a.camera, b.camera));
         const LightMaps& maps = frame.inputs.lightMaps[std::size_t(i)];
         EXPECT_TRUE(same(map(back.rsmDepth, i), maps.rsmDepth));
@@ -207,6 +211,8 @@ TEST_F(InputsFolder, CommentsAndFewerKeysAreFine) {
     edit("\"camera\"", "\"comment\": [\"by hand\"], \"camera\"");
     edit("\"innerConeAngle\": 0.0,", "");  // of the sun
     edit("\"rangeM\": 0.0,", "");
+    edit("\"indirectScale\": 1.0,", "");
+    edit("\"gatherRadiusUv\": 0.0,", "");
     EXPECT_EQ(loadInputs(folder / "in").lights.size(), 2u);
 }
 
@@ -313,6 +319,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadJson{"\"intensity\": [", "\"intensity\": [1e999, 1, 1], \"comment\": [", "number overflow"},
         BadJson{"\"intensity\": [", "\"intensity\": [1e99, 1, 1], \"comment\": [", "too large for a float"},
         BadJson{"\"rangeM\": 0.0", "\"rangeM\": -1", "lights[0]: rangeM: must not be negative"},
+        BadJson{"\"indirectScale\": 1.0", "\"indirectScale\": -1", "lights[0]: indirectScale: must be in [0; 1000]"},
+        BadJson{"\"gatherRadiusUv\": 0.0", "\"gatherRadiusUv\": 3", "lights[0]: gatherRadiusUv: must be in [0; 2]"},
         BadJson{"\"innerConeAngle\": 0.1", "\"innerConeAngle\": 1.1", "lights[1]: a spot needs 0 <= innerConeAngle"},
         BadJson{"\"rsmFlux\": \"rsm_1", "\"rsmFlux\": \"../rsm_1", "lights[1]: rsmFlux"}));
 

@@ -98,6 +98,42 @@ std::vector<Vpl> vpls(const Light& light, const LightMaps& maps) {
     return result;
 }
 
+std::vector<Vpl> minified(const std::vector<Vpl>& texels, int size, int factor, int lightIndex, std::uint32_t seed) {
+    const auto mix = [](std::uint32_t v) {
+        v = (v ^ (v >> 16)) * 0x7feb352du;
+        v = (v ^ (v >> 15)) * 0x846ca68bu;
+        return v ^ (v >> 16);
+    };
+    const int blocks = (size + factor - 1) / factor;
+    std::vector<Vpl> result(std::size_t(blocks) * std::size_t(blocks));
+    for (int block = 0; block < blocks * blocks; ++block) {
+        std::vector<const Vpl*> lit;
+        std::vector<double> weights;
+        double total = 0.0, area = 0.0;
+        Vpl& out = result[std::size_t(block)];
+        for (int y = block / blocks * factor; y < std::min(size, (block / blocks + 1) * factor); ++y) {
+            for (int x = block % blocks * factor; x < std::min(size, (block % blocks + 1) * factor); ++x) {
+                const Vpl& p = texels[std::size_t(y) * std::size_t(size) + std::size_t(x)];
+                const double weight = p.flux.x + p.flux.y + p.flux.z;
+                if (weight == 0.0) continue;
+                lit.push_back(&p);
+                weights.push_back(weight);
+                total += weight;
+                area += p.radius * p.radius;
+                out.flux += p.flux;
+            }
+        }
+        if (lit.empty()) continue;
+        double left = (mix(std::uint32_t(lightIndex * blocks * blocks + block) + mix(seed)) >> 8) / 16777216.0 * total;
+        std::size_t picked = 0;
+        while (picked + 1 < lit.size() && left >= weights[picked]) left -= weights[picked++];
+        out.position = lit[picked]->position;
+        out.normal = lit[picked]->normal;
+        out.radius = std::sqrt(area);
+    }
+    return result;
+}
+
 double texelGeometry(const SurfacePoint& x, const Vpl& p) {
     const glm::dvec3 d = p.position - x.position;
     const double d2 = glm::dot(d, d);
@@ -136,24 +172,26 @@ PatternMove frameMove(int index, int sampleCount) {
 }
 
 glm::dvec3 rsmDisk(const SurfacePoint& x, const std::vector<Vpl>& texels, const Light& light, int size, int count,
-                   double radiusUv, PatternMove move) {
+                   double radiusUv, PatternMove move, double mapScale, DiskShape shape) {
     glm::dvec3 sum(0.0);
     if (!x.isValid) return sum;
     glm::dvec2 centre(0.5);
-    project(light.camera, x.position, centre);
+    if (project(light.camera, x.position, centre)) centre *= mapScale;
     centre = glm::clamp(centre, glm::dvec2(0.0), glm::dvec2(1.0));
-    const double pdf = 1.0 / (std::numbers::pi * radiusUv * radiusUv);  // over the unit square of the map
     for (int i = 0; i < count; ++i) {
         double mirrored = 0.0, place = 0.5;
         for (int bits = i; bits != 0; bits /= 2, place /= 2) mirrored += place * (bits % 2);
-        const double r = radiusUv * std::sqrt(std::fmod(double(i) / count + move.shift, 1.0));
-        const double angle = 2.0 * std::numbers::pi * (mirrored + move.turn);
+        const double u = std::fmod(double(i) / count + move.shift, 1.0);
+        const double r = radiusUv * std::pow(u, shape.power);
+        const double angle = 2.0 * std::numbers::pi * ((shape.isLine ? 0.0 : mirrored) + move.turn);
+        // Over the unit square of the map: 1 / (2 pi r) dr/du of the angle's and the radius's densities.
+        const double inversePdf = 2.0 * std::numbers::pi * r * radiusUv * shape.power * std::pow(u, shape.power - 1.0);
         const int px = int(std::floor((centre.x + r * std::cos(angle)) * size));
         const int py = int(std::floor((centre.y + r * std::sin(angle)) * size));
         if (px < 0 || py < 0 || px >= size || py >= size) continue;  // black beyond the border
         const Vpl& p = texels[std::size_t(py) * std::size_t(size) + std::size_t(px)];
         // The sum over texels is size^2 times the mean over the unit square.
-        sum += p.flux * texelGeometry(x, p) * double(size) * double(size) / (pdf * count);
+        sum += p.flux * texelGeometry(x, p) * double(size) * double(size) * inversePdf / double(count);
     }
     return sum / std::numbers::pi;
 }

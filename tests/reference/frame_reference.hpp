@@ -2,6 +2,7 @@
 // The stages again, in plain scalar doubles and straight from the equations: nothing here is shared with the kernels or
 // with the host code that feeds them (positions come from inverse matrices, not from ViewRays).
 
+#include <cstdint>
 #include <vector>
 
 #include <glm/matrix.hpp>
@@ -35,6 +36,9 @@ std::vector<SurfacePoint> surfacePoints(const Camera& camera, const ImageView& n
 /// The texels of one light's RSM, row by row; flux 0 where the light meets nothing.
 std::vector<Vpl> vpls(const Light& light, const LightMaps& maps);
 
+/// Blocks of factor x factor texels as one texel each, of light number `lightIndex` of a frame (rsm_minify.cl).
+std::vector<Vpl> minified(const std::vector<Vpl>& texels, int size, int factor, int lightIndex, std::uint32_t seed);
+
 /// G(p, x) of rsm_gather.cl: max(0, n_p.d) max(0, n.d) / (d^2 (d^2 + r^2)).
 double texelGeometry(const SurfacePoint& x, const Vpl& p);
 
@@ -54,9 +58,16 @@ PatternMove patternMove(int x, int y);
 /// The further move of frame `index`: r^2 by a fraction of a sample's step, by the R2 sequence.
 PatternMove frameMove(int index, int sampleCount);
 
-/// The disk estimator with `count` Hammersley points around the projection of x, for an RSM of side `size`.
+/// Points before their move: Hammersley's or along a line; density over radii: r = u^power.
+struct DiskShape {
+    bool isLine = false;
+    double power = 0.5;
+};
+
+/// The disk estimator with `count` points around the projection of x, for an RSM of side `size` of which
+/// the light's projection fills `mapScale` a side.
 glm::dvec3 rsmDisk(const SurfacePoint& x, const std::vector<Vpl>& texels, const Light& light, int size, int count,
-                   double radiusUv, PatternMove move);
+                   double radiusUv, PatternMove move, double mapScale = 1.0, DiskShape shape = {});
 
 /// Direct irradiance of one light behind its shadow map.
 glm::dvec3 directLight(const SurfacePoint& x, const Light& light, const ImageView& shadowDepth, double biasTexels,

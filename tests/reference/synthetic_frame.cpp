@@ -82,6 +82,8 @@ FrameImages makeSyntheticFrame(const SyntheticOptions& o) {
         light.intensity = glm::vec3(30.0f, 20.0f, 10.0f) * float(i + 1);
         light.innerConeAngle = 0.3f;
         light.outerConeAngle = 0.7f;
+        light.indirectScale = i == 1 ? 2.5f : 1.0f;
+        light.gatherRadiusUv = i == 2 ? 0.6f : 0.0f;
         light.rangeM = i == 1 ? 14.0f : 0.0f;
         const glm::vec3 eye = glm::vec3(-3.0f, 8.0f, 2.0f) + 2.0f * float(i) * random.direction();
         light.camera = lookAt(eye, glm::vec3(0.0f),

@@ -1,10 +1,13 @@
 // Every stage against its reference in doubles, at every width and storage, on every device here.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "earthshine/error.hpp"
 #include "earthshine/pipeline.hpp"
+#include "image/temp_folder.hpp"
 #include "reference/device_variants.hpp"
 #include "reference/frame_reference.hpp"
 #include "reference/synthetic_frame.hpp"
@@ -14,6 +17,10 @@ namespace {
 
 using reference::SurfacePoint;
 using reference::Vpl;
+
+bool gathersFromRecords(const reference::Variant& variant) {
+    return variant.options.rsmRecords != 0;
+}
 
 class FrameStages : public testing::TestWithParam<reference::Variant> {};
 
@@ -41,6 +48,11 @@ struct Expected {
     std::vector<glm::dvec3> direct, sum, disk;
 };
 
+reference::DiskShape shapeOf(const Settings& settings) {
+    constexpr double kPowers[] = {0.5, 1.0, 2.0};
+    return {settings.pattern == DiskPattern::Line, kPowers[int(settings.mapping)]};
+}
+
 Expected expectedOf(const FrameImages& images, const Settings& settings, int frameIndex) {
     const FrameInputs frame = images.inputs();
     Expected e;
@@ -57,15 +69,27 @@ Expected expectedOf(const FrameImages& images, const Settings& settings, int fra
         return reference::PatternMove{move.shift + step.shift, move.turn + step.turn};
     };
     for (std::size_t l = 0; l < frame.lights.size(); ++l) {
-        const std::vector<Vpl> texels = reference::vpls(frame.lights[l], frame.lightMaps[l]);
-        const int size = frame.lightMaps[l].rsmDepth.extent.widthPx;
+        std::vector<Vpl> texels = reference::vpls(frame.lights[l], frame.lightMaps[l]);
+        int size = frame.lightMaps[l].rsmDepth.extent.widthPx;
+        double mapScale = 1.0;
+        const auto indirectScale = double(frame.lights[l].indirectScale);
+        const float own = frame.lights[l].gatherRadiusUv;
+        const auto radiusUv = double(own > 0.0f ? own : settings.radiusUv);
+        if (const int factor = settings.rsmMinify; factor > 1) {
+            texels = reference::minified(texels, size, factor, int(l),
+                                         std::uint32_t(settings.animatesNoise ? frameIndex : 0));
+            const int blocks = (size + factor - 1) / factor;
+            mapScale = double(size) / (blocks * factor);
+            size = blocks;
+        }
         for (std::size_t i = 0; i < e.points.size(); ++i) {
             e.direct[i] +=
                 reference::directLight(e.points[i], frame.lights[l], frame.lightMaps[l].shadowDepth,
                                        double(settings.shadowBiasTexels), double(settings.shadowSlopeBiasTexels));
-            e.sum[i] += reference::rsmSum(e.points[i], texels);
-            e.disk[i] += reference::rsmDisk(e.points[i], texels, frame.lights[l], size, settings.sampleCount,
-                                            double(settings.radiusUv), moveOf(int(i) % width, int(i) / width));
+            e.sum[i] += indirectScale * reference::rsmSum(e.points[i], texels);
+            e.disk[i] += indirectScale *
+                         reference::rsmDisk(e.points[i], texels, frame.lights[l], size, settings.sampleCount, radiusUv,
+                                            moveOf(int(i) % width, int(i) / width), mapScale, shapeOf(settings));
         }
     }
     return e;
@@ -96,6 +120,55 @@ TEST_P(FrameStages, AgreeWithTheReference) {
         pipeline.run(settings);
         frameIndex += 2;
         expectClose(pipeline.read(Output::IndirectIrradiance), expected.sum, expected.points, kRelative);
+    }
+}
+
+TEST_P(FrameStages, AgreeWithTheReferenceOfEveryDisk) {
+    Pipeline pipeline{Device(GetParam().caps, GetParam().options)};
+    const FrameImages images = reference::makeSyntheticFrame();
+    pipeline.setFrame(images.inputs());
+    int frameIndex = 0;
+    for (const DiskPattern pattern : {DiskPattern::Hammersley, DiskPattern::Line}) {
+        for (const RadiusMapping mapping : {RadiusMapping::Area, RadiusMapping::Polar, RadiusMapping::Squared}) {
+            SCOPED_TRACE(testing::Message() << int(pattern) << ", " << int(mapping));
+            Settings settings;
+            settings.sampleCount = 13;
+            settings.radiusUv = 0.7f;
+            settings.pattern = pattern;
+            settings.mapping = mapping;
+            const Expected expected = expectedOf(images, settings, frameIndex++);
+            pipeline.run(settings);
+            expectClose(pipeline.read(Output::IndirectIrradiance), expected.disk, expected.points, kRelative);
+        }
+    }
+}
+
+// A map of 13 texels a side: every factor leaves blocks at the border with fewer texels.
+TEST_P(FrameStages, AgreeWithTheReferenceOfMinifiedMaps) {
+    Pipeline pipeline{Device(GetParam().caps, GetParam().options)};
+    reference::SyntheticOptions options;
+    options.rsmSizePx = 13;
+    const FrameImages images = reference::makeSyntheticFrame(options);
+    pipeline.setFrame(images.inputs());
+    Settings settings;
+    settings.sampleCount = 13;
+    settings.radiusUv = 0.4f;
+    if (!gathersFromRecords(GetParam())) {
+        settings.rsmMinify = 2;
+        EXPECT_THAT(test::thrown<UsageError>([&] { pipeline.run(settings); }), testing::StartsWith("rsm-minify: 2 "));
+        return;
+    }
+    int frameIndex = 0;
+    for (const int factor : {2, 4, 8}) {
+        SCOPED_TRACE(factor);
+        settings.rsmMinify = factor;
+        for (const Estimator estimator : {Estimator::Disk, Estimator::Sum}) {
+            settings.estimator = estimator;
+            const Expected expected = expectedOf(images, settings, frameIndex++);
+            pipeline.run(settings);
+            expectClose(pipeline.read(Output::IndirectIrradiance),
+                        estimator == Estimator::Disk ? expected.disk : expected.sum, expected.points, kRelative);
+        }
     }
 }
 

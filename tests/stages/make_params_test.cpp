@@ -30,6 +30,8 @@ std::vector<unsigned char> bytesOf(const FrameParams& p) {
         bytes.insert(bytes.end(), data, data + sizeof part);
     };
     append(p.estimator);
+    append(p.pattern);
+    append(p.pack);
     append(p.gather);
     append(p.sum);
     append(p.directLight);
@@ -109,6 +111,7 @@ TEST(MakeParams, TheFramesGeometryGoesThrough) {
     for (const ViewRays& rays : {p.gather.cameraRays, p.sum.cameraRays, p.directLight.cameraRays})
         EXPECT_EQ(std::memcmp(&rays, &g.cameraRays, sizeof rays), 0);
     EXPECT_EQ(p.gather.rsmSizePx, 64);
+    EXPECT_EQ(p.gather.mapScale, 1.0f);
     EXPECT_EQ(p.sum.rsmSizePx, 64);
     EXPECT_EQ(p.gather.lightCount, 2);
     EXPECT_EQ(p.sum.lightCount, 2);
@@ -116,6 +119,23 @@ TEST(MakeParams, TheFramesGeometryGoesThrough) {
     EXPECT_EQ(p.directLight.shadowWidthPx, 128);
     EXPECT_EQ(p.directLight.shadowHeightPx, 96);
     EXPECT_EQ(p.sum.firstRowPx, 0);
+}
+
+TEST(MakeParams, BlocksOfAMinifiedMapMayStickOut) {
+    FrameGeometry g = geometry();
+    g.rsmSizePx = 61;
+    Settings settings;
+    settings.rsmMinify = 8;
+    const FrameParams p = makeParams(settings, g);
+    EXPECT_EQ(p.pack.sizePx, 61);
+    EXPECT_EQ(p.pack.minify, 8);
+    EXPECT_EQ(p.pack.seed, 3u);
+    EXPECT_EQ(p.gather.rsmSizePx, 8);
+    EXPECT_EQ(p.sum.rsmSizePx, 8);
+    EXPECT_FLOAT_EQ(p.gather.mapScale, 61.0f / 64.0f);
+    settings.rsmMinify = 3;
+    EXPECT_THAT(test::thrown<UsageError>([&] { validate(settings); }),
+                testing::StrEq("rsm-minify: 3 is not 1, 2, 4 or 8"));
 }
 
 TEST(MakeParams, OutOfRangeIsRefusedByName) {

@@ -76,6 +76,27 @@ TEST_F(Invariance, DiskOverSamplesRadiusMapSizeAndFrustum) {
     }
 }
 
+// Every pattern and density over radii has the mean of the full sum. A line needs the turns of many pixels.
+TEST_F(Invariance, DiskOverPatternsAndMappings) {
+    DrawnScene parallel(platesWith(kAbove));
+    const FrameImages frame = parallel.draw(squareView(kAbove), {64, 64}, beamOnto(kEmitter, kLux, 1.3), 256);
+    const double sum = formFactor(frame, fullSum());
+    for (const DiskPattern pattern : {DiskPattern::Hammersley, DiskPattern::Line}) {
+        for (const RadiusMapping mapping : {RadiusMapping::Area, RadiusMapping::Polar, RadiusMapping::Squared}) {
+            for (const int sampleCount : {64, 256, 1024}) {
+                for (const double radiusUv : {1.4142136, 2.0}) {
+                    Settings settings = wholeDisk(sampleCount, radiusUv);
+                    settings.pattern = pattern;
+                    settings.mapping = mapping;
+                    expectTruth(fmt::format("{}_{}_{}spp_radius_{}", kDiskPatternNames[int(pattern)],
+                                            kRadiusMappingNames[int(mapping)], sampleCount, radiusUv),
+                                formFactor(frame, settings), sum, kBar);
+                }
+            }
+        }
+    }
+}
+
 // Along a shared edge what a point receives peaks beside its own projection, at the pattern's centre: there the radii
 // decide. Few pixels find the peak, so the mean is over many, and over extents that lay the noise's tile differently.
 TEST_F(Invariance, DiskAlongASharedEdge) {

@@ -51,6 +51,13 @@ std::vector<Check> makeChecks() {
     add("sum", above, squareView(above), 16, beam, 32, fullSum(), irradiance, parallel, parallel);
     add("disk", above, squareView(above), 32, beam, 32, wholeDisk(1024), irradiance, parallel, parallel);
     add("disk, radius 2", above, squareView(above), 32, beam, 32, wholeDisk(1024, 2.0), irradiance, parallel, parallel);
+    for (const RadiusMapping mapping : {RadiusMapping::Polar, RadiusMapping::Squared}) {
+        Settings line = wholeDisk(1024);
+        line.pattern = DiskPattern::Line;
+        line.mapping = mapping;
+        add(mapping == RadiusMapping::Polar ? "polar line" : "squared line", above, squareView(above), 64, beam, 32,
+            line, irradiance, parallel, parallel);
+    }
     add("radiance", above, squareView(above), 16, beam, 32, fullSum(), Output::Indirect, kAlbedo / kPi * parallel,
         parallel);
     // What faces away, and what lies behind the emitter.
@@ -58,6 +65,12 @@ std::vector<Check> makeChecks() {
     add("facing away", facingAway, squareView(facingAway), 16, beam, 32, fullSum(), irradiance, 0.0, parallel);
     add("behind", below, squareView(below), 16, beam, 32, fullSum(), irradiance, 0.0, parallel);
 
+    // Blocks of 8 texels, of which the emitter's edges cut off a part: 36 texels a metre.
+    Settings minified = fullSum();
+    minified.rsmMinify = 8;
+    minified.animatesNoise = false;
+    add("minified", above, squareView(above), 16, beamOnto(emitter, kLux, 10.0), 360, minified, irradiance, parallel,
+        parallel);
     // One texel on a slope of 60 degrees, seen from so near that its disc decides (disc_test.cpp).
     const double height = 0.2, side = 0.4, slope = kPi / 3.0;
     const glm::dvec3 u(1, 0, 0), v(0.0, std::sin(slope), -std::cos(slope)), centre(0.5, 0, -0.5);
@@ -122,13 +135,14 @@ constexpr Mutation kEstimators[] = {
     {"sum misses two columns", "rsm_sum.cl", "x < params.rsmSizePx; ++x", "x < params.rsmSizePx - 2; ++x"},
     {"disk without 1/pi", "common/rsm_gather.clh", "* size * size * ES_INV_PI", "* size * size"},
     {"disk twice", "common/rsm_gather.clh", "* size * size * ES_INV_PI", "* size * size * 2.0f * ES_INV_PI"},
-    {"disk of r, not r^2", "common/rsm_gather.clh", "params->radiusUv * params->radiusUv * size",
-     "params->radiusUv * size"},
+    {"disk of r, not r^2", "common/rsm_gather.clh", "radius * radius * size", "radius * size"},
     {"disk without the map's size", "common/rsm_gather.clh", "* size * size * ES_INV_PI", "* ES_INV_PI"},
-    {"disk without the pattern's weight", "common/rsm_gather.clh", "g * p.z", "g"},
-    {"disk denser at its centre", "common/rsm_gather.clh", "sqrt(r2 - floor(r2))", "(r2 - floor(r2))"},
-    {"disk that does not wrap", "common/rsm_gather.clh", "r2 - floor(r2)", "r2"},
-    {"disk with a lit border", "common/rsm_gather.clh", "vselect(isInside, g * p.z, 0.0f)", "g * p.z"},
+    {"disk without the pattern's weight", "common/rsm_gather.clh", "g * weight", "g"},
+    {"disk denser at its centre", "common/rsm_gather.clh", "unitRadius = sqrt(u)", "unitRadius = u"},
+    {"disk that does not wrap", "common/rsm_gather.clh", "u = u - floor(u)", "u = u"},
+    {"polar disk without its pdf", "common/rsm_gather.clh", "weight *= 2.0f * u", "weight *= 1.0f"},
+    {"squared disk with u^2 for u^3", "common/rsm_gather.clh", "4.0f * u * unitRadius", "4.0f * unitRadius"},
+    {"disk with a lit border", "common/rsm_gather.clh", "vselect(isInside, g * weight, 0.0f)", "g * weight"},
 };
 
 constexpr Mutation kTexels[] = {
@@ -146,9 +160,15 @@ constexpr Mutation kTexels[] = {
 };
 
 constexpr Mutation kOtherStages[] = {
-    {"normals half as long", "rsm_pack.cl", "* 32767.0f", "* 16383.0f"},
-    {"radius twice", "rsm_pack.cl", "* 0x1p-112f", "* 0x1p-111f"},
-    {"flux in another channel's place", "rsm_pack.cl", "record.fluxR = r.lane[i]", "record.fluxR = a.lane[i]"},
+    {"normals half as long", "common/rsm_record.clh", "* 32767.0f", "* 16383.0f"},
+    {"radius twice", "common/rsm_record.clh", "* 0x1p-112f", "* 0x1p-111f"},
+    {"flux in another channel's place", "common/rsm_record.clh", "record.fluxR = r.lane[i]",
+     "record.fluxR = a.lane[i]"},
+    {"minified flux of one texel", "rsm_minify.cl", "flux = add3(flux, f);", "flux = f;"},
+    {"minified flux of one row", "rsm_minify.cl", "int rows = min(params.minify, ", "int rows = min(1, "},
+    {"minified position of the wrong column", "rsm_minify.cl", "vselectInt(isPicked, x, pickedX)",
+     "vselectInt(isPicked, x / 2, pickedX)"},
+    {"minified texel at no depth", "rsm_minify.cl", "vselect(isPicked, depth, pickedDepth)", "pickedDepth"},
     {"radiance without 1/pi", "modulate.cl", "(vfloat)(ES_INV_PI)", "(vfloat)(1.0f)"},
     {"direct light without its cosine", "direct_light.cl", "e * max(cosine, 0.0f)", "e"},
     {"spot without its cone's square", "direct_light.cl", "cone * cone * window", "cone * window"},

@@ -38,6 +38,8 @@ struct Light {
     float outerConeAngle = 0.785f;  ///< (rad) (0; pi/2) - spot: no light from here on
     float rangeM = 0.0f;            ///< (m >= 0) - spot: KHR_lights_punctual range; 0 = without end
     Camera camera;
+    float indirectScale = 1.0f;   ///< [0; 1000] - times this light's indirect light; only 1 is physical
+    float gatherRadiusUv = 0.0f;  ///< [0; 2] (of the RSM's side) - disk: this light's radius; 0 = the setting's
 };
 
 /// What the camera sees, one texel a pixel; all five of one extent. Sky: depth 0 and normal w 0.

@@ -14,6 +14,21 @@ enum class Estimator {
 };
 inline constexpr const char* kEstimatorNames[] = {"disk", "sum"};
 
+/// Where the disk's samples lie before noise moves them.
+enum class DiskPattern {
+    Hammersley,  ///< all over the disk
+    Line,        ///< all along one radius: less work for a cache, more noise; only turned pixels' mean covers the disk
+};
+inline constexpr const char* kDiskPatternNames[] = {"hammersley", "line"};
+
+/// How the disk's samples are spread over radii, each by its own pdf, so that the mean is the same.
+enum class RadiusMapping {
+    Area,     ///< uniform by area
+    Polar,    ///< uniform by radius: denser towards the centre
+    Squared,  ///< r = u^2: denser still
+};
+inline constexpr const char* kRadiusMappingNames[] = {"area", "polar", "squared"};
+
 /// How one iteration of the spatial filter lays its taps.
 enum class FilterKernel {
     Separable,  ///< five in a row, then five in a column: ten reads; edges that run aslant are kept less well
@@ -43,8 +58,12 @@ struct Settings {
                                             ///< map from anywhere, less gives up energy for less noise
     bool rotates = true;                    ///< disk: blue noise turns the pattern at each pixel; off: bands, no noise
     bool animatesNoise = true;              ///< disk: each frame moves the pattern, so that frames' mean converges
-    bool accumulates = false;               ///< frames are averaged over time, along motion vectors
-    int historyFrames = 32;                 ///< [1; 1024] (frames) - accumulate: what history is worth at most
+    DiskPattern pattern = DiskPattern::Hammersley;  ///< disk: where samples lie before noise moves them
+    RadiusMapping mapping = RadiusMapping::Area;    ///< disk: how samples are spread over radii
+    int rsmMinify = 1;           ///< 1, 2, 4 or 8 (RSM texels a side) - this many squared become one texel of
+                                 ///< their summed flux, before estimators read them; needs packed records
+    bool accumulates = false;    ///< frames are averaged over time, along motion vectors
+    int historyFrames = 32;      ///< [1; 1024] (frames) - accumulate: what history is worth at most
     float antiLag = 16.0f;       ///< [0; 256] - accumulate: history is dropped where the light changed by more than
                                  ///< sqrt of this times the tile's noise; 0 = never
     float fireflyFactor = 0.0f;  ///< [0; 1000] - accumulate: a pixel may be this much brighter than all around it and
@@ -91,6 +110,16 @@ void forEachSetting(SettingsT& s, Visitor&& visit) {
     visit(SettingInfo{"animate-noise", "", 0, 1,
                       "disk: each frame turns and shifts the pattern on, for means over frames"},
           s.animatesNoise);
+    visit(SettingInfo{"pattern", "", 0, 1, "disk: samples all over it, or along one line, which noise must turn",
+                      kDiskPatternNames},
+          s.pattern);
+    visit(
+        SettingInfo{"mapping", "", 0, 2, "disk: samples uniform by area, by radius (polar), or denser still (squared)",
+                    kRadiusMappingNames},
+        s.mapping);
+    visit(SettingInfo{"rsm-minify", "RSM texels a side", 1, 8,
+                      "blocks of this many (1, 2, 4 or 8) become one texel of their summed flux"},
+          s.rsmMinify);
     visit(SettingInfo{"accumulate", "", 0, 1, "average frames over time, along motion vectors"}, s.accumulates);
     visit(SettingInfo{"history", "frames", 1, 1024, "accumulate: what history is worth at most"}, s.historyFrames);
     visit(

@@ -36,7 +36,8 @@
 // view space is right-handed and looks along -z, NDC is OpenGL's (y up, z in [-1; 1]). viewFromWorld is rigid.
 // Intensity is in lux (directional, with an orthographic projection) or candela (spot, with a perspective one; the
 // three numbers of its cone and range, as in KHR_lights_punctual, may be left out elsewhere). indirectScale and
-// gatherRadiusUv may be left out: 1 and 0. "comment" may stand anywhere; any other key is an error, and so is a file outside the folder.
+// gatherRadiusUv may be left out: 1 and 0. "comment" may stand anywhere; any other key is an error, and so is a file
+// outside the folder.
 
 #include <filesystem>
 

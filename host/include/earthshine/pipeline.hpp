@@ -46,8 +46,9 @@ public:
     void setFrame(const FrameInputs& frame);
 
     /// Computes the outputs of the frame that was set, and waits. `progress`, if given, hears fractions in [0; 1].
-    /// Throws UsageError for settings out of range, DeviceError if the device fails. Each run that ends well is the next
-    /// frame of the noise (Settings::animatesNoise): a pipeline's n-th run gives the same on every machine, to rounding.
+    /// Throws UsageError for settings out of range, DeviceError if the device fails. Each run that ends well is the
+    /// next frame of the noise (Settings::animatesNoise): a pipeline's n-th run gives the same on every machine, to
+    /// rounding.
     void run(const Settings& settings, const std::function<void(double)>& progress = {});
 
     /// The next run() begins anew: after a cut, when nothing of the previous frame is of use. Without it, a run that

@@ -118,16 +118,25 @@ struct Run {
     double estimatorMs = 0, frameMs = 0;
 };
 
-Run runSetting(Pipeline& pipeline, const Settings& settings, int repeats, const std::string& title) {
+/// Stages of indirect light.
+bool isIndirect(const std::string& stage) {
+    return stage.starts_with("rsm_") || stage == "temporal" || stage == "history_check" || stage == "atrous";
+}
+
+Run runSetting(Pipeline& pipeline, const QualitySetting& setting, int repeats, const std::string& title) {
     std::vector<double> estimator, frame;
     Progress progress(title);
-    for (int i = 0; i <= repeats; ++i) {
-        pipeline.run(settings, [&](double part) { progress.update((i + part) / (repeats + 1)); });
+    // A setting of one frame is run several times to be timed, each as if it were the first.
+    const int runs = setting.frames > 1 ? setting.frames : repeats + 1;
+    pipeline.forgetHistory();
+    for (int i = 0; i < runs; ++i) {
+        if (setting.frames == 1) pipeline.forgetHistory();
+        pipeline.run(setting.settings, [&](double part) { progress.update((i + part) / runs); });
         if (i == 0) continue;  // compiles
         double sum = 0.0, all = 0.0;
         for (const StageTime& stage : pipeline.stageTimes()) {
             all += stage.ms;
-            if (stage.stage.starts_with("rsm_")) sum += stage.ms;
+            if (isIndirect(stage.stage)) sum += stage.ms;
         }
         estimator.push_back(sum);
         frame.push_back(all);
@@ -159,8 +168,7 @@ QualityResult measureScene(const QualityScene& scene, const QualityList& list, c
     for (const QualitySetting& setting : list.settings) {
         // The full sum takes as long as a hundred gathers, and as long every time.
         const int repeats = setting.settings.estimator == Estimator::Sum ? 1 : arguments.repeats;
-        const Run run =
-            runSetting(pipeline, setting.settings, repeats, fmt::format("{}: {}", scene.name, setting.label));
+        const Run run = runSetting(pipeline, setting, repeats, fmt::format("{}: {}", scene.name, setting.label));
         QualityRow row{&setting, run.estimatorMs, run.frameMs,
                        measureErrors(run.indirect.view(), unoccluded.indirect.pixels.view(), options),
                        measureErrors(run.indirect.view(), oneBounce.indirect.pixels.view(), options)};

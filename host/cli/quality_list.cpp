@@ -83,11 +83,20 @@ void assign(const Entry& entry, const SettingInfo& info, const Json& json, Value
 }
 
 QualitySetting settingOf(const Entry& entry) {
-    std::vector<std::string> keys{"series"};
+    std::vector<std::string> keys{"series", "preset", "frames"};
     QualitySetting setting;
     forEachSetting(setting.settings, [&keys](const SettingInfo& info, auto&) { keys.emplace_back(info.name); });
     entry.allow(keys);
     try {
+        if (entry.find("preset")) {
+            setting.label = entry.text("preset", "");
+            setting.settings = settingsOf(Preset(parseChoice(setting.label, kPresetNames)));
+        }
+        if (const Json* frames = entry.find("frames")) {
+            assign(entry, {"frames", "", 1, 1000, ""}, *frames, setting.frames);
+            if (setting.frames < 1 || setting.frames > 1000) entry.fail("'frames' must be in [1; 1000]");
+            setting.label += fmt::format("{}frames {}", setting.label.empty() ? "" : ", ", setting.frames);
+        }
         forEachSetting(setting.settings, [&](const SettingInfo& info, auto& value) {
             const Json* json = entry.find(info.name);
             if (!json) return;

@@ -5,7 +5,8 @@
 //    "settings": [{"series": "disk, radius 0.5", "estimator": "disk", "spp": 8, "radius": 0.5}, ...]}
 //
 // Files are found from the list's own folder; "camera" and "sun" may be left out. A setting's keys are those of
-// earthshine/settings.hpp; points of one series are joined in plots.
+// earthshine/settings.hpp, and "preset", which the others then change, and "frames" of a still camera, of which the
+// last is measured; points of one series are joined in plots.
 
 #include <filesystem>
 #include <optional>
@@ -27,6 +28,7 @@ struct QualityScene {
 struct QualitySetting {
     std::string series;
     Settings settings;
+    int frames = 1;     ///< [1; 1000] - of a still camera
     std::string label;  ///< the keys that were given, as "disk, spp 8, radius 0.5"
 };
 

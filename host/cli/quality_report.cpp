@@ -60,7 +60,7 @@ nlohmann::ordered_json qualityJson(const std::vector<QualityResult>& results) {
 std::string qualityMarkdown(const std::vector<QualityResult>& results, const std::string& heading) {
     std::string text = fmt::format("# Quality of indirect irradiance\n\n{}\n\n", heading);
     text +=
-        "`ms`: median device time of the stages that read the RSM, and of all stages. `estimator`: error against the "
+        "`ms`: median device time of the stages of indirect light, and of all stages. `estimator`: error against the "
         "path-traced truth without indirect visibility. `truth`: error against the path-traced bounce, so with the "
         "light that leaks. `mean` is signed; relMSE is the mean of err^2 / (ref^2 + (0.1 mean ref)^2).\n";
     for (const QualityResult& result : results) {

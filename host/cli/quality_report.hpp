@@ -15,7 +15,7 @@ namespace earthshine::cli {
 /// One setting on one scene.
 struct QualityRow {
     const QualitySetting* setting;
-    double estimatorMs = 0;    ///< device time of the stages that read the RSM
+    double estimatorMs = 0;    ///< device time of the stages of indirect light
     double frameMs = 0;        ///< device time of all stages
     PictureErrors unoccluded;  ///< against the truth without indirect visibility: the estimator's own error
     PictureErrors oneBounce;   ///< against the truth: that and the light that leaks

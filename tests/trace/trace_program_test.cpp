@@ -205,6 +205,8 @@ TEST_F(TruthProgram, QualityRefusesListsThatMakeNoSense) {
     EXPECT_THAT(list("{" + scenes + R"(, "settings": [{"spp": 0}]})"), HasSubstr("settings[0]"));
     EXPECT_THAT(list("{" + scenes + R"(, "settings": [{"sppp": 8}]})"), HasSubstr("'sppp'"));
     EXPECT_THAT(list("{" + scenes + R"(, "settings": [{"estimator": "guess"}]})"), HasSubstr("guess"));
+    EXPECT_THAT(list("{" + scenes + R"(, "settings": [{"preset": "best"}]})"), HasSubstr("'best' is none of still"));
+    EXPECT_THAT(list("{" + scenes + R"(, "settings": [{"frames": 0}]})"), HasSubstr("'frames' must be in [1; 1000]"));
     EXPECT_THAT(list("{" + scenes + R"(, "settings": [{"radius": "wide"}]})"), HasSubstr("'radius'"));
     EXPECT_THAT(list(R"({"scenes": [{"camera": "x"}], "settings": [{}]})"), HasSubstr("scenes[0]"));
     EXPECT_FALSE(std::filesystem::exists(folder / "q" / "quality.md"));

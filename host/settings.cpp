@@ -24,6 +24,9 @@ Settings settingsOf(Preset preset) {
         s.filterNormal = 0.3f;
         return s;
     }
+    // Near texels are few and bright: uniform samples find them as fireflies. Measured at 8 samples and 32 frames of
+    // the atrium's court: relMSE 7.1 by area, 0.22 polar, 0.18 squared.
+    s.mapping = RadiusMapping::Squared;
     s.filterFade = 8.0f;
     if (preset == Preset::Fast) {
         s.sampleCount = 4;

@@ -5,8 +5,8 @@
 //   plane: distance of q's point from p's plane; reach: depthTolerance times the way to q on the surface, so that neither
 //   the scene's scale nor the step matters. All of it is polynomial: no transcendental a tap.
 //   fade = min(1, fadeFrames / length): where history is long there is little noise left, and blur would be all error.
-//   luminance: (l_p - l_q)^2 / (luminanceTolerance^2 variance of p's mean), from 4 frames of history on
-//   (Schied et al. 2017).
+//   luminance: (l_p - l_q)^2 / (luminanceTolerance^2 variance of p's mean), coming in from 3 to 4 frames
+//   (Schied et al. 2017); a hundredth of l_p is never an edge, nor could 32 bits tell its variance.
 //   ATROUS_WEIGHTS_DEPTH is the field's usual weight, for comparison: e^(-|z_p - z_q| max(1/4, n_p.v) / (depthTolerance
 //   |(i, j)|)) e^(-|n_p - n_q|^2 / normalTolerance), v towards the eye.
 //   in   inIrradiance   lx
@@ -53,7 +53,7 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
     if (params.luminanceTolerance > 0.0f) {
         vfloat variance = max(load1(inMoment, px) - l * l, 0.0f) / max(length, 1.0f);
         vfloat range = params.luminanceTolerance * params.luminanceTolerance * variance;
-        inverseVariance = vselect(length >= 4.0f, 1.0f / (range + 1e-6f * l * l + 1e-30f), 0.0f);
+        inverseVariance = min(max(length - 3.0f, 0.0f), 1.0f) / (range + 1e-4f * l * l + 1e-30f);
     }
 
     float centre = (params.radiusX > 0 ? params.kernel0 : 1.0f) * (params.radiusY > 0 ? params.kernel0 : 1.0f);

@@ -212,6 +212,7 @@ void Pipeline::run(const Settings& settings, const std::function<void(double)>& 
 
 void Pipeline::forgetHistory() {
     impl_->indirect.forget();
+    impl_->frameIndex = 0;
 }
 
 HostImage Pipeline::read(Output output) {

@@ -63,7 +63,12 @@ FrameImages slidingWalls(Extent extent) {
 struct Memory {
     std::vector<glm::dvec3> irradiance;
     std::vector<double> length;
+    std::vector<double> moment;  ///< mean squared luminance
 };
+
+double luminanceOf(const glm::dvec3& c) {
+    return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+}
 
 std::vector<glm::dvec3> colors(const HostImage& image) {
     std::vector<glm::dvec3> result;
@@ -85,13 +90,26 @@ void expectNear(const HostImage& actual, const std::vector<glm::dvec3>& expected
                 << int(i) % actual.extent().widthPx << ", " << int(i) / actual.extent().widthPx;
 }
 
-/// temporal.cl for a camera that stands still.
-Memory accumulate(const FrameImages& f, const Memory& past, const std::vector<glm::dvec3>& now, double maxFrames) {
+/// temporal.cl for a camera that stands still; a firefly factor of 0 is none.
+Memory accumulate(const FrameImages& f, const Memory& past, const std::vector<glm::dvec3>& now, double maxFrames,
+                  double fireflyFactor = 0.0) {
     const Extent e = f.depth.extent();
     const FrameInputs inputs = f.inputs();
     const auto points = reference::surfacePoints(f.camera, inputs.gbuffer.normalWs, inputs.gbuffer.depth);
     const HostImage motion = toFloat(inputs.gbuffer.motion);
-    Memory next{std::vector<glm::dvec3>(now.size(), glm::dvec3(0.0)), std::vector<double>(now.size(), 0.0)};
+    const std::vector<double> none(now.size(), 0.0);
+    Memory next{std::vector<glm::dvec3>(now.size(), glm::dvec3(0.0)), none, none};
+    const auto limited = [&](int x, int y, const glm::dvec3& remembered) {
+        const glm::dvec3& sample = now[std::size_t(y * e.widthPx + x)];
+        if (fireflyFactor == 0.0) return sample;
+        double brightest = luminanceOf(remembered);
+        for (int ty = std::max(y - 1, 0); ty <= std::min(y + 1, e.heightPx - 1); ++ty)
+            for (int tx = std::max(x - 1, 0); tx <= std::min(x + 1, e.widthPx - 1); ++tx)
+                if (tx != x || ty != y)
+                    brightest = std::max(brightest, luminanceOf(now[std::size_t(ty * e.widthPx + tx)]));
+        const double l = luminanceOf(sample);
+        return l > 0.0 ? std::min(fireflyFactor * brightest / l, 1.0) * sample : sample;
+    };
     for (int y = 0; y < e.heightPx; ++y) {
         for (int x = 0; x < e.widthPx; ++x) {
             const auto at = std::size_t(y * e.widthPx + x);
@@ -102,7 +120,7 @@ Memory accumulate(const FrameImages& f, const Memory& past, const std::vector<gl
             const glm::dvec3 then =
                 reference::unproject(f.camera, {(px + 0.5) / e.widthPx, (py + 0.5) / e.heightPx}, depthThen);
             const auto sumTaps = [&](int firstX, int firstY, int side, double looseness, auto&& weightOf) {
-                double weight = 0.0, length = 0.0;
+                double weight = 0.0, length = 0.0, moment = 0.0;
                 glm::dvec3 sum(0.0);
                 for (int ty = firstY; ty < firstY + side; ++ty) {
                     for (int tx = firstX; tx < firstX + side; ++tx) {
@@ -116,16 +134,20 @@ Memory accumulate(const FrameImages& f, const Memory& past, const std::vector<gl
                         weight += w;
                         sum += w * past.irradiance[std::size_t(ty * e.widthPx + tx)];
                         length += w * past.length[std::size_t(ty * e.widthPx + tx)];
+                        moment += w * past.moment[std::size_t(ty * e.widthPx + tx)];
                     }
                 }
                 if (weight < 0.01) return false;
                 const double frames = std::min(length / weight + 1.0, maxFrames);
                 next.length[at] = frames;
-                next.irradiance[at] = glm::mix(sum / weight, now[at], 1.0 / frames);
+                const glm::dvec3 sample = limited(x, y, sum / weight);
+                next.irradiance[at] = glm::mix(sum / weight, sample, 1.0 / frames);
+                next.moment[at] = glm::mix(moment / weight, std::pow(luminanceOf(sample), 2.0), 1.0 / frames);
                 return true;
             };
             next.length[at] = 1.0;
-            next.irradiance[at] = now[at];
+            next.irradiance[at] = limited(x, y, glm::dvec3(0.0));
+            next.moment[at] = std::pow(luminanceOf(next.irradiance[at]), 2.0);
             if (past.length.empty()) continue;
             const bool isFound = sumTaps(int(std::floor(px)), int(std::floor(py)), 2, 1.0, [&](int tx, int ty) {
                 return (1.0 - std::fabs(tx - px)) * (1.0 - std::fabs(ty - py));
@@ -138,9 +160,9 @@ Memory accumulate(const FrameImages& f, const Memory& past, const std::vector<gl
     return next;
 }
 
-/// One pass of atrous.cl without luminance and with history of one frame.
+/// One pass of atrous.cl; without `memory`, history is of one frame.
 std::vector<glm::dvec3> filterPass(const FrameImages& f, const std::vector<glm::dvec3>& in, const Settings& settings,
-                                   int radiusX, int radiusY, int step) {
+                                   int radiusX, int radiusY, int step, const Memory* memory = nullptr) {
     const Extent e = f.depth.extent();
     const FrameInputs inputs = f.inputs();
     const auto points = reference::surfacePoints(f.camera, inputs.gbuffer.normalWs, inputs.gbuffer.depth);
@@ -156,6 +178,12 @@ std::vector<glm::dvec3> filterPass(const FrameImages& f, const std::vector<glm::
             const SurfacePoint& p = points[std::size_t(y * e.widthPx + x)];
             if (!p.isValid) continue;
             const double z = double(*f.depth.pixel(x, y));
+            const auto at = std::size_t(y * e.widthPx + x);
+            const double length = memory ? memory->length[at] : 1.0, l = luminanceOf(in[at]);
+            const double fade = std::min(double(settings.filterFade) / length, 1.0);
+            const double variance = memory ? std::max(memory->moment[at] - l * l, 0.0) / length : 0.0;
+            const double deviations = double(settings.filterLuminance) / step;  // an iteration has twice the step
+            const double guidance = deviations > 0.0 ? std::clamp(length - 3.0, 0.0, 1.0) : 0.0;
             double weights = 0.0;
             glm::dvec3 sum(0.0);
             for (int j = -radiusY; j <= radiusY; ++j) {
@@ -171,12 +199,16 @@ std::vector<glm::dvec3> filterPass(const FrameImages& f, const std::vector<glm::
                     if (steps > 0.0 && settings.filterWeights == FilterWeights::Plane) {
                         const double reach = double(settings.filterDepth) * footprint * z * steps * step;
                         const double plane = glm::dot(p.normal, points[tap].position - p.position) / reach;
-                        w = std::pow(std::max(1.0 - plane * plane - turned, 0.0), 2.0);
+                        const double dl = luminanceOf(in[tap]) - l;
+                        const double brighter =
+                            guidance * dl * dl / (deviations * deviations * variance + 1e-4 * l * l + 1e-30);
+                        w = std::pow(std::max(1.0 - plane * plane - turned - brighter, 0.0), 2.0);
                     } else if (steps > 0.0) {
                         const double cosine = std::max(glm::dot(p.normal, glm::normalize(eye - p.position)), 0.25);
                         const double dz = std::fabs(double(*f.depth.pixel(tx, ty)) - z);
                         w = std::exp(-dz * cosine / (double(settings.filterDepth) * steps) - turned);
                     }
+                    if (steps > 0.0) w *= fade;
                     w *= (radiusX > 0 ? kernel(i) : 1.0) * (radiusY > 0 ? kernel(j) : 1.0);
                     weights += w;
                     sum += w * in[tap];
@@ -216,9 +248,39 @@ TEST_P(Denoiser, HistoryFollowsMotion) {
         expectNear(denoised.read(Output::IndirectIrradiance), memory.irradiance);
     }
     denoised.forgetHistory();
+    raw.forgetHistory();
     raw.run(fewSamples());
     denoised.run(accumulating);
     expectNear(denoised.read(Output::IndirectIrradiance), colors(raw.read(Output::IndirectIrradiance)));
+}
+
+TEST_P(Denoiser, FirefliesAreLimitedAndTheirMomentsGuideTheFilter) {
+    const FrameImages frame = slidingWalls({53, 21});
+    Pipeline raw(device_), denoised(device_);
+    raw.setFrame(frame.inputs());
+    denoised.setFrame(frame.inputs());
+    Settings settings = fewSamples();
+    settings.accumulates = true;
+    settings.fireflyFactor = 1.5f;
+    settings.filterIterations = 2;
+    settings.filterFade = 4.0f;
+    settings.filterLuminance = 3.0f;
+    settings.filterKernel = FilterKernel::Square3x3;
+    for (const int feedback : {0, 1}) {
+        settings.feedback = feedback;
+        Memory memory;
+        raw.forgetHistory();
+        denoised.forgetHistory();
+        for (int i = 0; i < 7; ++i) {
+            SCOPED_TRACE(testing::Message() << "feedback " << feedback << ", frame " << i);
+            raw.run(fewSamples());
+            denoised.run(settings);
+            memory = accumulate(frame, memory, colors(raw.read(Output::IndirectIrradiance)), 32.0, 1.5);
+            const auto once = filterPass(frame, memory.irradiance, settings, 1, 1, 1, &memory);
+            expectNear(denoised.read(Output::IndirectIrradiance), filterPass(frame, once, settings, 1, 1, 2, &memory));
+            if (feedback > 0) memory.irradiance = once;
+        }
+    }
 }
 
 TEST_P(Denoiser, FiltersInEveryForm) {

@@ -51,8 +51,9 @@ public:
     /// rounding.
     void run(const Settings& settings, const std::function<void(double)>& progress = {});
 
-    /// The next run() begins anew: after a cut, when nothing of the previous frame is of use. Without it, a run that
-    /// accumulates takes the frame before as what its motion vectors point to.
+    /// The next run() begins anew, as a new pipeline's first, with the first frame's noise: after a cut, when nothing
+    /// of the previous frame is of use. Without it, a run that accumulates takes the frame before as what its motion
+    /// vectors point to.
     void forgetHistory();
 
     /// Copies an output of the last run to the host.

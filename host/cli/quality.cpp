@@ -165,18 +165,25 @@ QualityResult measureScene(const QualityScene& scene, const QualityList& list, c
     options.mask = mask.view();
 
     QualityResult result{&scene, unoccluded.summary, oneBounce.summary, {}, {}};
+    HostImage converged;
     for (const QualitySetting& setting : list.settings) {
         // The full sum takes as long as a hundred gathers, and as long every time.
         const int repeats = setting.settings.estimator == Estimator::Sum ? 1 : arguments.repeats;
-        const Run run = runSetting(pipeline, setting, repeats, fmt::format("{}: {}", scene.name, setting.label));
-        QualityRow row{&setting, run.estimatorMs, run.frameMs,
+        Run run = runSetting(pipeline, setting, repeats, fmt::format("{}: {}", scene.name, setting.label));
+        QualityRow row{&setting,
+                       run.estimatorMs,
+                       run.frameMs,
+                       {},
                        measureErrors(run.indirect.view(), unoccluded.indirect.pixels.view(), options),
                        measureErrors(run.indirect.view(), oneBounce.indirect.pixels.view(), options)};
         log(LogLevel::Info, fmt::format("{}: {}: mean {:+.2f} %, relMSE {:.3g}, {:.2f} ms", scene.name, setting.label,
                                         100 * row.unoccluded.meanError, row.unoccluded.relMse, row.estimatorMs));
+        if (!converged.empty()) row.converged = measureErrors(run.indirect.view(), converged.view(), options);
         result.rows.push_back(std::move(row));
         if (&setting == &list.settings.back())
             result.direct = measureErrors(run.direct.view(), oneBounce.direct.pixels.view(), options);
+        if (setting.settings.estimator == Estimator::Sum && setting.settings.rsmMinify == 1)
+            converged = std::move(run.indirect);
     }
     result.unoccluded.mean = result.rows.front().unoccluded.referenceMean;
     result.oneBounce.mean = result.rows.front().oneBounce.referenceMean;

@@ -46,6 +46,7 @@ nlohmann::ordered_json qualityJson(const std::vector<QualityResult>& results) {
                             {"series", row.setting->series},
                             {"estimatorMs", row.estimatorMs},
                             {"frameMs", row.frameMs},
+                            {"converged", row.converged ? errorsJson(*row.converged) : nlohmann::ordered_json()},
                             {"unoccluded", errorsJson(row.unoccluded)},
                             {"oneBounce", errorsJson(row.oneBounce)}});
         json.push_back(
@@ -60,7 +61,9 @@ nlohmann::ordered_json qualityJson(const std::vector<QualityResult>& results) {
 std::string qualityMarkdown(const std::vector<QualityResult>& results, const std::string& heading) {
     std::string text = fmt::format("# Quality of indirect irradiance\n\n{}\n\n", heading);
     text +=
-        "`ms`: median device time of the stages of indirect light, and of all stages. `estimator`: error against the "
+        "`ms`: median device time of the stages of indirect light, and of all stages. `sum`: error against the full "
+        "sum "
+        "over the RSM, which the estimators tend to. `estimator`: error against the "
         "path-traced truth without indirect visibility. `truth`: error against the path-traced bounce, so with the "
         "light that leaks. `mean` is signed; relMSE is the mean of err^2 / (ref^2 + (0.1 mean ref)^2).\n";
     for (const QualityResult& result : results) {
@@ -72,14 +75,19 @@ std::string qualityMarkdown(const std::vector<QualityResult>& results, const std
             result.unoccluded.samples, result.unoccluded.noiseRelMse, 100 * result.direct.meanError,
             result.direct.relMse);
         text +=
-            "| setting | ms | ms, all | estimator: mean | relMSE | HDR-FLIP | truth: mean | relMSE | HDR-FLIP |\n"
-            "|---|---:|---:|---:|---:|---:|---:|---:|---:|\n";
-        for (const QualityRow& row : result.rows)
-            text +=
-                fmt::format("| {} | {:.2f} | {:.2f} | {:+.2f} % | {:.3g} | {:.4f} | {:+.2f} % | {:.3g} | {:.4f} |\n",
-                            row.setting->label, row.estimatorMs, row.frameMs, 100 * row.unoccluded.meanError,
-                            row.unoccluded.relMse, row.unoccluded.hdrFlipMean, 100 * row.oneBounce.meanError,
-                            row.oneBounce.relMse, row.oneBounce.hdrFlipMean);
+            "| setting | ms | ms, all | sum: relMSE | HDR-FLIP | estimator: mean | relMSE | HDR-FLIP | truth: mean | "
+            "relMSE | HDR-FLIP |\n"
+            "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
+        for (const QualityRow& row : result.rows) {
+            const std::string converged =
+                row.converged ? fmt::format("{:.3g} | {:.4f}", row.converged->relMse, row.converged->hdrFlipMean)
+                              : " | ";
+            text += fmt::format(
+                "| {} | {:.2f} | {:.2f} | {} | {:+.2f} % | {:.3g} | {:.4f} | {:+.2f} % | {:.3g} | {:.4f} |\n",
+                row.setting->label, row.estimatorMs, row.frameMs, converged, 100 * row.unoccluded.meanError,
+                row.unoccluded.relMse, row.unoccluded.hdrFlipMean, 100 * row.oneBounce.meanError, row.oneBounce.relMse,
+                row.oneBounce.hdrFlipMean);
+        }
     }
     return text;
 }

@@ -1,6 +1,7 @@
 #pragma once
 // The error table of `quality`, as JSON, as Markdown and as plots.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,9 @@ namespace earthshine::cli {
 /// One setting on one scene.
 struct QualityRow {
     const QualitySetting* setting;
-    double estimatorMs = 0;    ///< device time of the stages of indirect light
-    double frameMs = 0;        ///< device time of all stages
+    double estimatorMs = 0;                  ///< device time of the stages of indirect light
+    double frameMs = 0;                      ///< device time of all stages
+    std::optional<PictureErrors> converged;  ///< against the full sum, if the list has that before this row
     PictureErrors unoccluded;  ///< against the truth without indirect visibility: the estimator's own error
     PictureErrors oneBounce;   ///< against the truth: that and the light that leaks
 };

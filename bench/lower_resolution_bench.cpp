@@ -50,7 +50,7 @@ struct Frame {
         Settings settings;
         settings.sampleCount = kSampleCount;
         settings.radiusUv = 0.3f;
-        params = makeParams(settings, {rays, kRsmSizePx, 1, inputs.shadowExtent}).gather;
+        params = makeParams(settings, {rays, extent, kRsmSizePx, 1, inputs.shadowExtent}).gather;
         if (device.tuning().rsmRecords) RsmPackStage(device).enqueue(inputs.rsm, inputs.lights);
         DownsampleStage(device).enqueue({inputs.normalWs, inputs.depth, nullptr, lowNormalWs, lowDepth, nullptr},
                                         stride);

@@ -41,7 +41,7 @@ void gather(benchmark::State& state, Extent extent, int sampleCount, const Varia
     settings.sampleCount = sampleCount;
     settings.radiusUv = 0.3f;  // a disk that stays on the map: every sample costs its full price
     const FrameParams params =
-        makeParams(settings, {makeViewRays(frame.camera, extent), kRsmSizePx, 1, inputs.shadowExtent, 0});
+        makeParams(settings, {makeViewRays(frame.camera, extent), extent, kRsmSizePx, 1, inputs.shadowExtent, 0});
 
     RsmGatherStage stage(device);
     const RsmGatherStage::Images surfaces{inputs.normalWs, inputs.depth, inputs.rsm, inputs.lights,

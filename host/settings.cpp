@@ -49,6 +49,9 @@ void validate(const Settings& settings) {
                                              *info.unit ? " " : "", info.unit));
         }
     });
+    if (settings.divisor == 3) throw UsageError("divisor: 3 is not 1, 2 or 4");
+    if (settings.upsampling == Upsampling::Interpolate && settings.estimator == Estimator::Sum)
+        throw UsageError("upsampling: interpolate gathers the rest from a disk; use it with --estimator disk");
     if (settings.feedback > settings.filterIterations)
         throw UsageError(fmt::format("feedback: history cannot remember iteration {} of {} (filter)", settings.feedback,
                                      settings.filterIterations));

@@ -61,7 +61,7 @@ void computeIndirect(const IndirectArguments& arguments) {
     report["lights"] = frame.lights.size();
     report["loadMs"] = loadMs;
     addFrame(report, {device, choice.why, arguments.settings, timing, arguments.frameCount, pipeline.exposure(),
-                      nonFinite, paths});
+                      pipeline.gatheredPixels(), nonFinite, paths});
     files.writeReport(readableJson(report));
     outputs.commit();
     fmt::print("inputs      {}: {}x{}, {} lights\n", arguments.folder, images.depth.extent().widthPx,

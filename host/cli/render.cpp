@@ -118,7 +118,7 @@ void renderScene(const RenderArguments& arguments) {
     report["transport"] = "host";
     report["loadMs"] = loadMs;
     addFrame(report, {device, choice.why, arguments.settings, timing, frameCount, pipeline.exposure(),
-                      files.nonFinite(), paths});
+                      pipeline.gatheredPixels(), files.nonFinite(), paths});
     files.finish(readableJson(report));
     outputs.commit();
     fmt::print("scene       {}: {} triangles, {} materials, {} textures\n", arguments.scene, scene.triangleCount(),

@@ -76,6 +76,7 @@ void addFrame(Json& report, const FrameReport& frame) {
     report["steps"] = Json::array();
     for (const auto& [name, series] : frame.timing.steps()) report["steps"].push_back(seriesJson("step", name, series));
     report["exposure"] = frame.exposure;
+    report["gatheredPixels"] = frame.gatheredPixels;
     report["nonFinite"] = Json::object();
     for (const NonFiniteLayer& layer : frame.nonFinite) report["nonFinite"][layer.layer] = layer.count;
     report["outputs"] = Json::array();

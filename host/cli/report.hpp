@@ -27,11 +27,13 @@ struct FrameReport {
     const FrameTiming& timing;
     int frameCount = 1;
     float exposure = 0.0f;
+    int gatheredPixels = 0;  ///< that interpolation left to be gathered in full
     std::vector<NonFiniteLayer> nonFinite;
     std::vector<std::filesystem::path> outputs;
 };
 
-/// Puts its keys into `report`: device, settings, frames, stages, steps, exposure, nonFinite, outputs.
+/// Puts its keys into `report`: device, settings, frames, stages, steps, exposure, gatheredPixels,
+/// nonFinite, outputs.
 void addFrame(nlohmann::ordered_json& report, const FrameReport& frame);
 
 }  // namespace earthshine::cli

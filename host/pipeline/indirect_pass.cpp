@@ -118,13 +118,27 @@ void IndirectPass::denoise(const FrameSurfaces& inputs, const FrameSurfaces& pre
 
 void IndirectPass::enqueue(const FrameSurfaces& inputs, const FrameSurfaces& previous, const FrameParams& params,
                            const std::function<void(double)>& progress) {
-    allocate(inputs.depth.extent(), params);
-    gather(inputs, params, progress);
+    if (extent_ != inputs.depth.extent() || divisor_ != params.divisor) forget();
+    extent_ = inputs.depth.extent();
+    divisor_ = params.divisor;
+    const bool isLower = params.divisor > 1;
+    if (isLower) {
+        if (!lower_) lower_.emplace(device_);
+        lower_->pick(inputs, params.divisor);
+    }
+    const FrameSurfaces& seen = isLower ? lower_->picked() : inputs;
+    allocate(seen.depth.extent(), params);
+    gather(seen, params, progress);
     irradiance_ = sampled_;
     if (params.denoises)
-        denoise(inputs, previous, params);
+        denoise(seen, isLower ? lower_->previous() : previous, params);
     else
         forget();
+    interpolated_ = isLower && params.upsampling == Upsampling::Interpolate;
+    if (interpolated_)
+        irradiance_ = lower_->interpolate(inputs, irradiance_, params, pattern_, noise_);
+    else if (isLower)
+        irradiance_ = lower_->upsample(inputs, irradiance_, params);
 }
 
 }  // namespace earthshine

@@ -2,8 +2,10 @@
 // From RSMs to clean irradiance: gathers, accumulates over time, filters. Owns history.
 
 #include <functional>
+#include <optional>
 
 #include "interop/frame_surfaces.hpp"
+#include "pipeline/lower_resolution.hpp"
 #include "pipeline/make_params.hpp"
 #include "stages/atrous_stage.hpp"
 #include "stages/history_check_stage.hpp"
@@ -20,8 +22,10 @@ class IndirectPass {
 public:
     explicit IndirectPass(const Device& device);
 
-    /// Did the previous frame, of this extent, leave a history, and was that checked?
-    bool hasHistory(Extent extent) const { return hasHistory_ && sampled_.extent() == extent; }
+    /// Did the previous frame, of this extent and divisor, leave a history, and was that checked?
+    bool hasHistory(Extent extent, int divisor) const {
+        return hasHistory_ && divisor_ == divisor && extent_ == extent;
+    }
     bool hasConfidence() const { return hasConfidence_; }
     /// The next frame begins anew.
     void forget() { hasHistory_ = hasConfidence_ = false; }
@@ -33,6 +37,9 @@ public:
 
     /// lx: what the last frame made.
     const Surface& irradiance() const { return irradiance_; }
+
+    /// How many pixels interpolation left to be gathered in full; 0 without it. Waits for the device.
+    int gatheredPixels() const { return interpolated_ ? lower_->gatheredPixels() : 0; }
 
 private:
     void allocate(Extent extent, const FrameParams& params);
@@ -51,9 +58,14 @@ private:
     HistoryCheckStage historyCheck_;
     AtrousStage atrous_;
 
+    std::optional<LowerResolution> lower_;  ///< once it was asked for
+
     cl::Buffer noise_, pattern_, confidence_;
     int patternSize_ = 0;
     DiskPattern patternKind_ = DiskPattern::Hammersley;
+    Extent extent_;  ///< of the full picture
+    int divisor_ = 1;
+    bool interpolated_ = false;
     Surface sampled_;                 ///< this frame's estimate
     Surface accumulated_;             ///< temporal's output, where history takes a filtered picture instead
     Surface filtered_[2];             ///< the filter's passes in turn

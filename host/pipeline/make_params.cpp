@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "stages/frame_params.hpp"
+#include "stages/pick_grid.hpp"
 #include "stages/rsm_minify_stage.hpp"
 
 namespace earthshine {
@@ -72,9 +73,17 @@ std::vector<AtrousParams> filterPasses(const Settings& settings, const FrameGeom
 
 }  // namespace
 
-FrameParams makeParams(const Settings& settings, const FrameGeometry& frame) {
+FrameParams makeParams(const Settings& settings, const FrameGeometry& full) {
     constexpr float kMiddleGrey = 0.18f;  // what photographers and displays take for the middle
     FrameParams p;
+    // Indirect light sees the picked pixels; direct light sees all.
+    const PickGrid grid = makePickGrid(full.extent, settings.divisor);
+    FrameGeometry frame = full;
+    frame.cameraRays = pickedRays(full.cameraRays, grid);
+    frame.previousRays = pickedRays(full.previousRays, grid);
+    p.divisor = settings.divisor;
+    p.upsampling = settings.upsampling;
+    p.fullRays = full.cameraRays;
     p.estimator = settings.estimator;
     p.pattern = settings.pattern;
     const int frameIndex = settings.animatesNoise ? frame.frameIndex : 0;
@@ -105,7 +114,7 @@ FrameParams makeParams(const Settings& settings, const FrameGeometry& frame) {
     p.historyCheck.keptBelow = 0.5f * settings.antiLag;
     p.filterPasses = filterPasses(settings, frame);
     p.feedbackPasses = settings.feedback * (settings.filterKernel == FilterKernel::Separable ? 2 : 1);
-    p.directLight.cameraRays = frame.cameraRays;
+    p.directLight.cameraRays = full.cameraRays;
     p.directLight.lightCount = frame.lightCount;
     p.directLight.shadowWidthPx = frame.shadowExtent.widthPx;
     p.directLight.shadowHeightPx = frame.shadowExtent.heightPx;

@@ -19,7 +19,8 @@ namespace earthshine {
 
 /// What of a frame the parameters depend on.
 struct FrameGeometry {
-    ViewRays cameraRays{};
+    ViewRays cameraRays{};  ///< of the full picture, as previousRays
+    Extent extent{1, 1};
     int rsmSizePx = 0;
     int lightCount = 0;
     Extent shadowExtent;
@@ -33,6 +34,9 @@ struct FrameGeometry {
 struct FrameParams {
     Estimator estimator = Estimator::Disk;
     DiskPattern pattern = DiskPattern::Hammersley;
+    int divisor = 1;
+    Upsampling upsampling = Upsampling::Bilateral;
+    ViewRays fullRays{};  ///< gather, sum, temporal and filter have those of the picture at 1 / divisor
     RsmPackParams pack{};
     RsmGatherParams gather{};
     RsmSumParams sum{};         ///< firstRowPx is each launch's own

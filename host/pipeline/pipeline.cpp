@@ -188,9 +188,9 @@ void Pipeline::run(const Settings& settings, const std::function<void(double)>& 
     p.transport.enqueue(p.frame, p.inputs);
     p.allocate();
     const ViewRays rays = makeViewRays(p.frame.camera, p.extent);
-    p.params =
-        makeParams(settings, {rays, p.inputs.rsm.sizePx, p.inputs.rsm.lightCount, p.inputs.shadowExtent, p.frameIndex,
-                              p.previousRays, p.indirect.hasHistory(p.extent), p.indirect.hasConfidence()});
+    p.params = makeParams(
+        settings, {rays, p.extent, p.inputs.rsm.sizePx, p.inputs.rsm.lightCount, p.inputs.shadowExtent, p.frameIndex,
+                   p.previousRays, p.indirect.hasHistory(p.extent, settings.divisor), p.indirect.hasConfidence()});
     p.previousRays = rays;
 
     p.directLight.enqueue(
@@ -246,6 +246,11 @@ HostImage Pipeline::toDisplay(const ImageView& radiance) {
     p.transport.enqueueImage(radiance, p.scratchSurface(), 0);
     p.toneMap.enqueue({p.scratch, p.exposure, bytes}, p.params.toneMap);
     return p.readBuffer(bytes, PixelFormat::RGBA8);
+}
+
+int Pipeline::gatheredPixels() const {
+    impl_->requireRun();
+    return impl_->indirect.gatheredPixels();
 }
 
 float Pipeline::exposure() const {

@@ -315,6 +315,56 @@ TEST_P(Denoiser, FiltersInEveryForm) {
     }
 }
 
+// Picked at half and a fourth: what is interpolated lies between what the picks have, what is gathered in full is as if
+// nothing had been left out; and history works at lower resolution as at the picture's own.
+TEST_P(Denoiser, LowerResolutions) {
+    const FrameImages frame = slidingWalls({53, 37});
+    Pipeline pipeline(device_);
+    FrameInputs inputs = frame.inputs();
+    inputs.gbuffer.motion = {};
+    pipeline.setFrame(inputs);
+    Settings settings = fewSamples();
+    settings.sampleCount = 256;
+    settings.animatesNoise = false;
+    pipeline.run(settings);
+    const std::vector<glm::dvec3> full = colors(pipeline.read(Output::IndirectIrradiance));
+    EXPECT_EQ(pipeline.gatheredPixels(), 0);
+    double mean = 0.0;
+    for (const glm::dvec3& e : full) mean += luminanceOf(e);
+    for (const int divisor : {2, 4}) {
+        settings.divisor = divisor;
+        for (const Upsampling upsampling : {Upsampling::Bilateral, Upsampling::Interpolate}) {
+            SCOPED_TRACE(testing::Message() << "1/" << divisor << ", " << kUpsamplingNames[int(upsampling)]);
+            settings.upsampling = upsampling;
+            settings.accumulates = false;
+            pipeline.run(settings);
+            const HostImage once = pipeline.read(Output::IndirectIrradiance);
+            const std::vector<glm::dvec3> low = colors(once);
+            int same = 0, lit = 0;
+            double lowMean = 0.0;
+            for (std::size_t i = 0; i < full.size(); ++i) {
+                lowMean += luminanceOf(low[i]);
+                if (full[i] == glm::dvec3(0.0)) continue;
+                ++lit;
+                if (std::fabs(low[i].y - full[i].y) <= 1e-4 * full[i].y) ++same;
+            }
+            EXPECT_NEAR(lowMean / mean, 1.0, 0.1);  // noise of 256 samples, at a fourth or a sixteenth of the pixels
+            if (upsampling == Upsampling::Interpolate) {
+                EXPECT_GT(pipeline.gatheredPixels(), 0);
+                EXPECT_LT(pipeline.gatheredPixels(), lit);
+                EXPECT_GE(same, pipeline.gatheredPixels());
+            } else {
+                EXPECT_EQ(pipeline.gatheredPixels(), 0);
+            }
+            // The same frame again and again is its own mean.
+            settings.accumulates = true;
+            pipeline.forgetHistory();
+            for (int i = 0; i < 3; ++i) pipeline.run(settings);
+            expectNear(pipeline.read(Output::IndirectIrradiance), low);
+        }
+    }
+}
+
 TEST_P(Denoiser, ALightThatGoesOutLeavesNoGhost) {
     const FrameImages lit = slidingWalls({53, 37});
     FrameImages dark = slidingWalls({53, 37});

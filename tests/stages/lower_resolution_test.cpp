@@ -426,8 +426,8 @@ TEST_P(LowerResolution, AListIsGatheredAsAllPixelsAre) {
             settings.sampleCount = kSamples;
             settings.radiusUv = 0.4f;
             settings.rotates = rotates;
-            const FrameGeometry geometry{makeViewRays(frame.camera, extent), inputs.rsm.sizePx, inputs.rsm.lightCount,
-                                         inputs.shadowExtent};
+            const FrameGeometry geometry{makeViewRays(frame.camera, extent), extent, inputs.rsm.sizePx,
+                                         inputs.rsm.lightCount, inputs.shadowExtent};
             const RsmGatherParams params = makeParams(settings, geometry).gather;
             gather.enqueue({inputs.normalWs, inputs.depth, inputs.rsm, inputs.lights, pattern, noise, all}, params);
             const HostImage expected = test::readSurface(device_, all);

@@ -31,6 +31,9 @@ std::vector<unsigned char> bytesOf(const FrameParams& p) {
     };
     append(p.estimator);
     append(p.pattern);
+    append(p.divisor);
+    append(p.upsampling);
+    append(p.fullRays);
     append(p.pack);
     append(p.gather);
     append(p.sum);
@@ -54,6 +57,7 @@ FrameGeometry geometry() {
     g.rsmSizePx = 64;
     g.lightCount = 2;
     g.shadowExtent = {128, 96};
+    g.extent = {32, 18};
     g.frameIndex = 3;
     g.hasHistory = g.hasConfidence = true;
     return g;

@@ -63,6 +63,9 @@ public:
     /// last run, so that pictures side by side compare: RGBA8, sRGB.
     HostImage toDisplay(const ImageView& radiance);
 
+    /// How many pixels of the last run interpolation left to be gathered in full; 0 unless Upsampling::Interpolate.
+    int gatheredPixels() const;
+
     /// The factor from cd/m^2 to display-linear that the last run used.
     float exposure() const;
 

@@ -37,6 +37,14 @@ enum class FilterKernel {
 };
 inline constexpr const char* kFilterKernelNames[] = {"separable", "3x3", "5x5"};
 
+/// How indirect light of a lower resolution comes to every pixel.
+enum class Upsampling {
+    Bilateral,    ///< a mean of neighbours that lie on the pixel's surface (Kopf et al. 2007)
+    Interpolate,  ///< the same where enough of them do; elsewhere the pixel is gathered in full, without the denoiser
+                  ///< (Dachsbacher & Stamminger 2005): for many samples
+};
+inline constexpr const char* kUpsamplingNames[] = {"bilateral", "interpolate"};
+
 /// What tells the filter that a tap lies on another surface (kernels/atrous.cl).
 enum class FilterWeights {
     Plane,  ///< its distance from the pixel's plane, against its distance along it: no matter the scene's scale
@@ -60,10 +68,12 @@ struct Settings {
     bool animatesNoise = true;              ///< disk: each frame moves the pattern, so that frames' mean converges
     DiskPattern pattern = DiskPattern::Hammersley;  ///< disk: where samples lie before noise moves them
     RadiusMapping mapping = RadiusMapping::Area;    ///< disk: how samples are spread over radii
-    int rsmMinify = 1;           ///< 1, 2, 4 or 8 (RSM texels a side) - this many squared become one texel of
-                                 ///< their summed flux, before estimators read them; needs packed records
-    bool accumulates = false;    ///< frames are averaged over time, along motion vectors
-    int historyFrames = 32;      ///< [1; 1024] (frames) - accumulate: what history is worth at most
+    int rsmMinify = 1;  ///< 1, 2, 4 or 8 (RSM texels a side) - this many squared become one texel of
+                        ///< their summed flux, before estimators read them; needs packed records
+    int divisor = 1;    ///< 1, 2 or 4 - indirect light is computed at this part of width and height
+    Upsampling upsampling = Upsampling::Bilateral;  ///< how it then comes to every pixel; interpolate: disk only
+    bool accumulates = false;                       ///< frames are averaged over time, along motion vectors
+    int historyFrames = 32;                         ///< [1; 1024] (frames) - accumulate: what history is worth at most
     float antiLag = 16.0f;       ///< [0; 256] - accumulate: history is dropped where the light changed by more than
                                  ///< sqrt of this times the tile's noise; 0 = never
     float fireflyFactor = 0.0f;  ///< [0; 1000] - accumulate: a pixel may be this much brighter than all around it and
@@ -120,6 +130,11 @@ void forEachSetting(SettingsT& s, Visitor&& visit) {
     visit(SettingInfo{"rsm-minify", "RSM texels a side", 1, 8,
                       "blocks of this many (1, 2, 4 or 8) become one texel of their summed flux"},
           s.rsmMinify);
+    visit(SettingInfo{"divisor", "", 1, 4, "indirect light at 1/N (1, 2 or 4) of width and height"}, s.divisor);
+    visit(SettingInfo{"upsampling", "", 0, 1,
+                      "divisor > 1: mean of neighbours on the surface, or interpolate and gather the rest",
+                      kUpsamplingNames},
+          s.upsampling);
     visit(SettingInfo{"accumulate", "", 0, 1, "average frames over time, along motion vectors"}, s.accumulates);
     visit(SettingInfo{"history", "frames", 1, 1024, "accumulate: what history is worth at most"}, s.historyFrames);
     visit(

@@ -175,7 +175,8 @@ struct PathTracer::Impl {
         const std::clock_t cpuStart = std::clock();
         std::mutex mutex;
         parallelFor(count, settings.threads, [&](int block) {
-            Work work;
+            thread_local Work work;  // its memory serves block after block
+            work.rays = {};
             body(block, work);
             const std::lock_guard lock(mutex);
             rays.camera += work.rays.camera;

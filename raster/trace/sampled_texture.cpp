@@ -14,14 +14,14 @@ float decoded(float encoded) {
     return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
-const std::array<float, 256>& decodedBytes() {
-    static const std::array<float, 256> table = [] {
-        std::array<float, 256> values{};
-        for (std::size_t i = 0; i < 256; ++i) values[i] = decoded(float(i) / 255.0f);
-        return values;
-    }();
-    return table;
+std::array<float, 256> valuesOfBytes(bool isSrgb) {
+    std::array<float, 256> values{};
+    for (std::size_t i = 0; i < 256; ++i) values[i] = isSrgb ? decoded(float(i) / 255.0f) : float(i) / 255.0f;
+    return values;
 }
+
+// Of a texture's bytes. Divisions are slow.
+const std::array<float, 256> kLinearBytes = valuesOfBytes(false), kSrgbBytes = valuesOfBytes(true);
 
 int wrapped(int x, int size, raster::Wrap wrap) {
     switch (wrap) {
@@ -57,15 +57,12 @@ SampledTexture::SampledTexture(const raster::Texture& texture)
     for (const raster::MipLevel& level : smaller_) add(level);
 }
 
-glm::vec4 SampledTexture::texel(const Level& level, int x, int y) const {
+inline glm::vec4 SampledTexture::texel(const Level& level, int x, int y) const {
     const std::size_t at = 4 * (std::size_t(y) * std::size_t(level.widthPx) + std::size_t(x));
     if (level.rgba8) {
         const std::uint8_t* t = level.rgba8 + at;
-        if (isSrgb_) {
-            const auto& table = decodedBytes();
-            return {table[t[0]], table[t[1]], table[t[2]], float(t[3]) / 255.0f};
-        }
-        return glm::vec4(t[0], t[1], t[2], t[3]) / 255.0f;
+        const auto& color = isSrgb_ ? kSrgbBytes : kLinearBytes;
+        return {color[t[0]], color[t[1]], color[t[2]], kLinearBytes[t[3]]};
     }
     const std::uint16_t* t = level.rgba16 + at;
     const glm::vec4 value = glm::vec4(t[0], t[1], t[2], t[3]) / 65535.0f;

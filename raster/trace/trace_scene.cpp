@@ -206,10 +206,11 @@ void TraceScene::Impl::addGeometry(Kind kind, std::size_t count) {
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(),
                                firstOfKind[kind] * sizeof(Triangle), sizeof(Triangle), count);
     rtcSetGeometryUserData(geometry, this);
-    const RTCFilterFunctionN filters[] = {filter<kPlain>, filter<kSingleSided>, filter<kMasked>,
-                                          filter<kMaskedSingleSided>};
-    rtcSetGeometryIntersectFilterFunction(geometry, filters[kind]);
-    if (kind != kPlain) rtcSetGeometryOccludedFilterFunction(geometry, filters[kind]);
+    const RTCFilterFunctionN filters[] = {nullptr, filter<kSingleSided>, filter<kMasked>, filter<kMaskedSingleSided>};
+    if (kind != kPlain) {  // which are there for everyone; allHits() brings a filter of its own
+        rtcSetGeometryIntersectFilterFunction(geometry, filters[kind]);
+        rtcSetGeometryOccludedFilterFunction(geometry, filters[kind]);
+    }
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene.get(), geometry, unsigned(kind));
     rtcReleaseGeometry(geometry);
@@ -220,7 +221,8 @@ void TraceScene::Impl::build() {
     if (!device) throw Error(fmt::format("Embree: no device (error {})", int(rtcGetDeviceError(nullptr))));
     hasStreams = rtcGetDeviceProperty(device.get(), RTC_DEVICE_PROPERTY_RAY_STREAM_SUPPORTED) != 0;
     scene.reset(rtcNewScene(device.get()));
-    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);  // no ray slips through a shared edge
+    // Robust: no ray slips through a shared edge.
+    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
     for (int kind = 0; kind < kKinds; ++kind) {
         const std::size_t end = kind + 1 < kKinds ? firstOfKind[kind + 1] : triangles.size();
         if (end > firstOfKind[kind]) addGeometry(Kind(kind), end - firstOfKind[kind]);
@@ -234,7 +236,6 @@ void TraceScene::Impl::build() {
 template <Kind kKind>
 void TraceScene::Impl::filter(const RTCFilterFunctionNArguments* arguments) {
     const auto& context = *reinterpret_cast<const Context*>(arguments->context);
-    if (kKind == kPlain && context.rule != Rule::Everything) return;
     const auto& impl = *static_cast<const Impl*>(arguments->geometryUserPtr);
     const unsigned count = arguments->N;
     for (unsigned i = 0; i < count; ++i) {
@@ -429,6 +430,8 @@ void TraceScene::allHits(const Ray& ray, std::vector<Hit>& hits) const {
     hits.clear();
     Context context = contextFor(Rule::Everything);
     context.hits = &hits;
+    // Comes after the filter of a triangle's own kind, which lets nothing through here: it sees the plain ones alone.
+    context.embree.filter = Impl::filter<kPlain>;
     nearest(impl_->scene.get(), context, ray);
 }
 

@@ -14,8 +14,9 @@ Settings settingsOf(Preset preset) {
     if (preset == Preset::Still) return s;
     s.sampleCount = 8;
     s.accumulates = true;
-    s.filterIterations = 5;
+    s.filterIterations = 4;
     if (preset == Preset::Baseline) {
+        s.filterIterations = 5;
         s.radiusUv = 0.2f;
         s.historyFrames = 20;
         s.antiLag = 0.0f;
@@ -29,8 +30,7 @@ Settings settingsOf(Preset preset) {
     s.mapping = RadiusMapping::Squared;
     s.filterFade = 8.0f;
     if (preset == Preset::Fast) {
-        s.sampleCount = 4;
-        s.filterIterations = 4;
+        s.sampleCount = 2;
     } else if (preset == Preset::High) {
         s.sampleCount = 16;
         s.historyFrames = 64;
@@ -50,7 +50,7 @@ void validate(const Settings& settings) {
         }
     });
     if (settings.divisor == 3) throw UsageError("divisor: 3 is not 1, 2 or 4");
-    if (settings.upsampling == Upsampling::Interpolate && settings.estimator == Estimator::Sum)
+    if (settings.divisor > 1 && settings.upsampling == Upsampling::Interpolate && settings.estimator == Estimator::Sum)
         throw UsageError("upsampling: interpolate gathers the rest from a disk; use it with --estimator disk");
     if (settings.feedback > settings.filterIterations)
         throw UsageError(fmt::format("feedback: history cannot remember iteration {} of {} (filter)", settings.feedback,

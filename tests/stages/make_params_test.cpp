@@ -186,6 +186,17 @@ TEST(MakeParams, HistoryCannotRememberAnIterationThatIsNotRun) {
     EXPECT_THAT(test::thrown<UsageError>([&] { validate(settings); }), testing::HasSubstr("iteration 3 of 2"));
 }
 
+TEST(MakeParams, DivisorsAreOneTwoOrFourAndInterpolationIsTheDisks) {
+    Settings settings;
+    settings.divisor = 3;
+    EXPECT_THAT(test::thrown<UsageError>([&] { validate(settings); }), testing::HasSubstr("3 is not 1, 2 or 4"));
+    settings.divisor = 2;
+    settings.upsampling = Upsampling::Interpolate;
+    EXPECT_NO_THROW(validate(settings));
+    settings.estimator = Estimator::Sum;
+    EXPECT_THAT(test::thrown<UsageError>([&] { validate(settings); }), testing::StartsWith("upsampling: "));
+}
+
 TEST(MakeParams, EveryPresetIsInRange) {
     for (int i = 0; i < int(std::size(kPresetNames)); ++i) EXPECT_NO_THROW(validate(settingsOf(Preset(i)))) << i;
 }

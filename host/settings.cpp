@@ -14,7 +14,7 @@ Settings settingsOf(Preset preset) {
     if (preset == Preset::Still) return s;
     s.sampleCount = 8;
     s.accumulates = true;
-    s.filterIterations = 4;
+    s.filterIterations = 3;
     if (preset == Preset::Baseline) {
         s.filterIterations = 5;
         s.radiusUv = 0.2f;

@@ -4,7 +4,7 @@
 //   2 x 2 pixels around x' that saw the same surface: near the plane through the point as it was then, with a like normal.
 //   Where none did, a 3 x 3 search with looser bounds rescues what it can; where that finds nothing, n starts at 1.
 //   Nehab et al. 2007; Schied et al. 2017, who compare depths: a plane's distance is as strict on slopes as it is ahead.
-//   c is history_check's confidence. A sample brighter than fireflyFactor times everything near it and than its history
+//   c is history_confidence's. A sample brighter than fireflyFactor times everything near it and than its history
 //   is cut to that, also when it has no history.
 //   in   inIrradiance     lx: this frame's estimate
 //   in   inNormalWs, inDepth   unit; m, 0 on sky

@@ -120,7 +120,7 @@ struct Run {
 
 /// Stages of indirect light.
 bool isIndirect(const std::string& stage) {
-    return stage.starts_with("rsm_") || stage == "temporal" || stage == "history_check" || stage == "atrous";
+    return stage.starts_with("rsm_") || stage == "temporal" || stage.starts_with("history_") || stage == "atrous";
 }
 
 Run runSetting(Pipeline& pipeline, const QualitySetting& setting, int repeats, const std::string& title) {

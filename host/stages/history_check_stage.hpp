@@ -1,12 +1,13 @@
 #pragma once
-// Does history still fit what arrives? The host half of kernels/history_check.cl.
+// Does history still fit what arrives? The host half of kernels/history_check.cl and
+// history_confidence.cl.
 
 #include "compute/kernel.hpp"
 #include "history_check_params.h"
 
 namespace earthshine {
 
-/// Writes one confidence a tile. Thread-compatible; owns its program, no images.
+/// Writes one confidence a tile. Thread-compatible; owns its programs and the tiles' sums, no images.
 class HistoryCheckStage {
 public:
     struct Images {
@@ -14,8 +15,10 @@ public:
         const Surface& accumulated;  ///< temporal's output
         const cl::Buffer& outConfidence;
     };
-    explicit HistoryCheckStage(const Device& device) : kernel_(device, "history_check") {}
-    void enqueue(const Images& images, const HistoryCheckParams& params);
+    explicit HistoryCheckStage(const Device& device)
+        : device_(device), check_(device, "history_check"), confidence_(device, "history_confidence") {}
+    /// `params.columns` and `rows` are set from `images`.
+    void enqueue(const Images& images, HistoryCheckParams params);
 
     /// Tiles in x and y of a picture.
     static Extent tiles(Extent extent) {
@@ -24,7 +27,10 @@ public:
     }
 
 private:
-    Kernel kernel_;
+    Device device_;
+    Kernel check_, confidence_;
+    Extent tiles_;
+    cl::Buffer sums_;
 };
 
 }  // namespace earthshine

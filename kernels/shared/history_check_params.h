@@ -1,4 +1,4 @@
-// Parameters of history_check.cl.
+// Parameters of history_confidence.cl, and the tiles of history_check.cl.
 #ifndef EARTHSHINE_SHARED_HISTORY_CHECK_PARAMS_H
 #define EARTHSHINE_SHARED_HISTORY_CHECK_PARAMS_H
 
@@ -13,7 +13,7 @@ namespace earthshine {
 typedef struct HistoryCheckParams {
     f32 keptBelow;     // ratios up to this one are noise: confidence 1
     f32 droppedAbove;  // > keptBelow: ratios from this one on are change: confidence 0
-    i32 padding0, padding1;
+    i32 columns, rows;  // of tiles
 } HistoryCheckParams;
 ES_ASSERT_SIZE(HistoryCheckParams, 16);
 

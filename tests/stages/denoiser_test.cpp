@@ -365,6 +365,76 @@ TEST_P(Denoiser, LowerResolutions) {
     }
 }
 
+double meanOf(const std::vector<glm::dvec3>& picture) {
+    double sum = 0.0;
+    for (const glm::dvec3& e : picture) sum += luminanceOf(e);
+    return sum / double(picture.size());
+}
+
+// The thieves of energy are rounding and a blur that is fed back: the mean must stay where it is.
+class DenoiserOverTime : public Denoiser {};
+
+TEST_P(DenoiserOverTime, NothingDriftsOver500Frames) {
+    const FrameImages frame = slidingWalls({53, 37});
+    Pipeline pipeline(device_);
+    FrameInputs inputs = frame.inputs();
+    inputs.gbuffer.motion = {};
+    pipeline.setFrame(inputs);
+    Settings settings = settingsOf(Preset::Balanced);
+    for (const int feedback : {0, 1}) {
+        settings.feedback = feedback;
+        pipeline.forgetHistory();
+        double early = 0.0, late = 0.0;  // means over as many frames as history is long
+        for (int i = 0; i < 500; ++i) {
+            pipeline.run(settings);
+            if (i % 8 != 7) continue;
+            const double mean = meanOf(colors(pipeline.read(Output::IndirectIrradiance)));
+            if (i >= 32 && i < 96) early += mean / 8.0;
+            if (i >= 436) late += mean / 8.0;
+        }
+        EXPECT_NEAR(late / early, 1.0, 0.005) << "feedback " << feedback;
+    }
+}
+
+// Eight frames after the light has jumped to another place, a picture with a past is no farther from the new light than
+// one without.
+TEST_P(Denoiser, ALightThatJumpsLeavesNoGhostAfterEightFrames) {
+    const FrameImages before = slidingWalls({53, 37});
+    FrameImages after = slidingWalls({53, 37});
+    const Extent maps = after.rsmFlux.extent();
+    for (int y = 0; y < maps.heightPx; ++y)  // what was lit from one half is lit, four times as much, from the other
+        for (int x = 0; x < maps.widthPx; ++x)
+            for (int c = 0; c < 3; ++c) after.rsmFlux.pixel(x, y)[c] *= 2 * x < maps.widthPx ? 4.0f : 0.0f;
+    const auto still = [](const FrameImages& frame) {
+        FrameInputs inputs = frame.inputs();
+        inputs.gbuffer.motion = {};
+        return inputs;
+    };
+    Settings settings = settingsOf(Preset::Balanced);
+    Settings converged;
+    converged.estimator = Estimator::Sum;
+    Pipeline truth(device_), jumping(device_), fresh(device_);
+    truth.setFrame(still(after));
+    truth.run(converged);
+    const std::vector<glm::dvec3> expected = colors(truth.read(Output::IndirectIrradiance));
+    jumping.setFrame(still(before));
+    for (int i = 0; i < 40; ++i) jumping.run(settings);
+    jumping.setFrame(still(after));
+    fresh.setFrame(still(after));
+    for (int i = 0; i < 8; ++i) {
+        jumping.run(settings);
+        fresh.run(settings);
+    }
+    const auto squaredError = [&](Pipeline& pipeline) {
+        const std::vector<glm::dvec3> picture = colors(pipeline.read(Output::IndirectIrradiance));
+        double sum = 0.0;
+        for (std::size_t i = 0; i < picture.size(); ++i)
+            sum += std::pow(luminanceOf(picture[i]) - luminanceOf(expected[i]), 2.0);
+        return sum;
+    };
+    EXPECT_LT(squaredError(jumping), 1.5 * squaredError(fresh));  // noise of other frames is not the same noise
+}
+
 TEST_P(Denoiser, ALightThatGoesOutLeavesNoGhost) {
     const FrameImages lit = slidingWalls({53, 37});
     FrameImages dark = slidingWalls({53, 37});
@@ -390,6 +460,8 @@ TEST_P(Denoiser, ALightThatGoesOutLeavesNoGhost) {
     EXPECT_LT(peakAfter(16.0f), 0.02 * peakAfter(0.0f));
 }
 
+INSTANTIATE_TEST_SUITE_P(All, DenoiserOverTime, testing::ValuesIn(reference::defaultVariants()),
+                         [](const auto& variant) { return variant.param.name; });
 INSTANTIATE_TEST_SUITE_P(All, Denoiser, testing::ValuesIn(reference::quickVariants()),
                          [](const auto& variant) { return variant.param.name; });
 

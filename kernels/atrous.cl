@@ -5,6 +5,9 @@
 //   plane: distance of q's point from p's plane; reach: depthTolerance times the way to q on the surface, so that neither
 //   the scene's scale nor the step matters. All of it is polynomial: no transcendental a tap.
 //   fade = min(1, fadeFrames / length): where history is long there is little noise left, and blur would be all error.
+//   Below SMALLEST_FADE it is none, and where all lanes have none, neighbours are not read.
+//   reach is max(1, YOUNG_FRAMES / length) times as far: among few frames' outliers a mean over what is only near is the
+//   lesser error (a first frame of leaves and balusters: relMSE 0.71 without, 0.4 with it).
 //   luminance: (l_p - l_q)^2 / (luminanceTolerance^2 variance of p's mean), coming in from 3 to 4 frames
 //   (Schied et al. 2017); a hundredth of l_p is never an edge, nor could 32 bits tell its variance.
 //   ATROUS_WEIGHTS_DEPTH is the field's usual weight, for comparison: e^(-|z_p - z_q| max(1/4, n_p.v) / (depthTolerance
@@ -21,6 +24,9 @@
 #include "math.clh"
 #include "surface.clh"
 
+#define SMALLEST_FADE 0.1f
+#define YOUNG_FRAMES 8.0f
+
 __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), SURFACE_IN(inLength),
                      SURFACE_IN(inMoment), SURFACE_OUT(outIrradiance), const AtrousParams params) {
     Pixel px = itemPixel();
@@ -32,10 +38,15 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
         store3(outIrradiance, px, make3(0.0f, 0.0f, 0.0f));
         return;
     }
-    vfloat3 normal = load3(inNormalWs, px);
     vfloat3 irradiance = load3(inIrradiance, px);
     vfloat length = load1(inLength, px);
     vfloat fade = min(params.fadeFrames / max(length, 1.0f), 1.0f);
+    fade = vselect(fade < SMALLEST_FADE, 0.0f, fade);
+    if (!anyLane(isSurface & (fade > 0.0f))) {
+        store3(outIrradiance, px, irradiance);  // 0 on sky already
+        return;
+    }
+    vfloat3 normal = load3(inNormalWs, px);
 
     // q's distance from p's plane is n.(x_q - x_p); with x = origin + depth ray, both linear in the pixel, it comes down
     // to these dot products.
@@ -48,6 +59,7 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
     vfloat cosine = max(-along * rsqrt(dot3(ray, ray)), 0.25f);
 
     vfloat reach = params.depthTolerance * vmad(depth, params.footprintPerM, params.footprintM);
+    reach *= max(YOUNG_FRAMES / max(length, 1.0f), 1.0f);
     vfloat inverseReach = 1.0f / max(reach, 1e-30f);
     float inverseNormal = 1.0f / params.normalTolerance;
     vfloat l = luminance(irradiance), inverseVariance = 0.0f;

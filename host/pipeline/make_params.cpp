@@ -44,7 +44,8 @@ std::vector<AtrousParams> filterPasses(const Settings& settings, const FrameGeom
         p.normalTolerance = settings.filterNormal;
         // Each iteration leaves less noise: a fourth of the variance, or so.
         p.luminanceTolerance = std::ldexp(settings.filterLuminance, -i);
-        p.fadeFrames = settings.filterFade;
+        // A step is twice as wide as the one before: it must fade twice as fast, or it blurs what frames made clean.
+        p.fadeFrames = std::max(std::ldexp(settings.filterFade, -i), 1.0f);
         p.footprintM = lengthOf(frame.cameraRays.originDx);
         p.footprintPerM = lengthOf(frame.cameraRays.rayDx);
         if (settings.filterKernel == FilterKernel::Square3x3) {

@@ -64,11 +64,11 @@ TEST_F(Invariance, DiskOverSamplesRadiusMapSizeAndFrustum) {
         // that of the emitter: 256 are some 12 to 40 on it.
         for (const double radiusUv : {1.4142136, 1.7, 2.0}) {
             for (const int sampleCount : {256, 1024, 4096}) {
-                for (const bool rotates : {true, false}) {
+                for (const Rotation rotation : {Rotation::Noise, Rotation::Off}) {
                     Settings settings = wholeDisk(sampleCount, radiusUv);
-                    settings.rotates = rotates;
+                    settings.rotation = rotation;
                     expectTruth(fmt::format("{}px_{}m_{}spp_radius_{}{}", map.sizePx, map.sideM, sampleCount, radiusUv,
-                                            rotates ? "" : "_fixed"),
+                                            rotation == Rotation::Noise ? "" : "_fixed"),
                                 formFactor(frame, settings), sum, kBar);
                 }
             }

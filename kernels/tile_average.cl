@@ -1,7 +1,7 @@
 // tile_average: the mean over a tile of the turned pattern (rsm_gather.cl), as far as it lies on one surface.
 //   out(p) = mean of in(q) over those q of [x - 1; x + 2] x [y - 1; y + 2] that lie on p's surface
 //   Any 4 x 4 pixels hold each of the tile's 16 turns once: where all of them count, the mean is that of one pattern with
-//   16 times as many samples, and nothing of the tile is left to see.
+//   16 times as many samples, and nothing of the tile is left to see. Its middle lies half a pixel aside.
 //   q lies on p's surface if n_p.n_q >= minNormalCosine and its point is at most planeTolerance times the way to q off p's
 //   plane; the way is across the view, at p's depth, so that the scene's scale does not matter. p itself always counts.
 //   Interleaved sampling: Keller & Heidrich 2001; that the mean must keep to a surface: Segovia et al. 2006.

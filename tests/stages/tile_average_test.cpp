@@ -54,7 +54,7 @@ bool nowhere(int, int) {
 
 /// Two walls so uneven that every decision goes both ways, and some sky.
 Picture unevenWalls(Extent extent, bool isOrthographic) {
-    std::mt19937 random(11);
+    std::mt19937 random(70);
     const auto uniform = [&random](double size) { return size * (double(random()) / 2147483648.0 - 1.0); };
     Picture p = walls(
         extent, [&](int x, int y) { return (x * 7 + y * 13) % 17 == 1; },
@@ -110,7 +110,7 @@ protected:
 };
 
 TEST_P(TileAverage, AgreesWithTheReference) {
-    for (const Extent extent : {Extent{1, 1}, Extent{7, 3}, Extent{37, 11}, Extent{70, 19}}) {
+    for (const Extent extent : {Extent{1, 1}, Extent{7, 3}, Extent{37, 11}, Extent{70, 9}}) {
         for (const bool isOrthographic : {false, true}) {
             SCOPED_TRACE(testing::Message() << extent.widthPx << " x " << extent.heightPx << ", " << isOrthographic);
             const Picture p = unevenWalls(extent, isOrthographic);
@@ -118,7 +118,7 @@ TEST_P(TileAverage, AgreesWithTheReference) {
             const std::vector<reference::SurfacePoint> points =
                 reference::surfacePoints(p.camera, p.normalWs.view(), p.depth.view());
             const reference::TileAverage expected = reference::tileAverage(p.camera, extent, points, irradiance);
-            ASSERT_GT(expected.clearance, 2e-5);  // floats decide as doubles do
+            ASSERT_GT(expected.clearance, 5e-5);  // floats decide as doubles do: they are 1e-5 exact
             if (extent.widthPx > 7) {
                 EXPECT_GT(expected.accepted, expected.taps / 5);
                 EXPECT_LT(expected.accepted, expected.taps / 5 * 4);

@@ -97,6 +97,37 @@ TEST_F(Invariance, DiskOverPatternsAndMappings) {
     }
 }
 
+// The 16 turns of a tile, averaged, have the mean of the full sum: few samples, since 16 lines are 16 times as many;
+// and at lower resolution. The mean lies half a pixel aside and is cut off at the picture's border, which costs up to a
+// pixel's part of what the picture changes by: hence many pixels. All of them sample the same radii, so few samples
+// miss the same part of a peak everywhere, until frames move them: hence eight frames.
+TEST_F(Invariance, TileOverSamplesRadiusAndDivisor) {
+    DrawnScene parallel(platesWith(kAbove)), perpendicular(platesWith(kBeside));
+    const Extent extent{320, 320};
+    const FrameImages above = parallel.draw(squareView(kAbove), extent, beamOnto(kEmitter, kLux, 1.0), 256);
+    const FrameImages beside = perpendicular.draw(squareView(kBeside), extent, beamOnto(kEmitter, kLux, 1.0), 256);
+    for (const int divisor : {1, 2}) {
+        for (const int sampleCount : {16, 64, 256}) {
+            for (const double radiusUv : {1.4142136, 2.0}) {
+                Settings settings = wholeDisk(sampleCount, radiusUv);
+                settings.pattern = DiskPattern::Line;
+                settings.mapping = RadiusMapping::Squared;
+                settings.rotation = Rotation::Tile;
+                settings.divisor = divisor;
+                settings.animatesNoise = true;
+                const auto meanOfFrames = [&](const FrameImages& frame) {
+                    double sum = 0.0;
+                    for (int i = 0; i < 8; ++i) sum += formFactor(frame, settings) / 8.0;
+                    return sum;
+                };
+                const std::string what = fmt::format("_1/{}_{}spp_radius_{}", divisor, sampleCount, radiusUv);
+                expectTruth("parallel" + what, meanOfFrames(above), 0.199825, kBar);
+                expectTruth("perpendicular" + what, meanOfFrames(beside), 0.200044, kBar);
+            }
+        }
+    }
+}
+
 // Along a shared edge what a point receives peaks beside its own projection, at the pattern's centre: there the radii
 // decide. Few pixels find the peak, so the mean is over many, and over extents that lay the noise's tile differently.
 TEST_F(Invariance, DiskAlongASharedEdge) {

@@ -14,6 +14,9 @@
 #include "surface.clh"
 #include "tile_average_params.h"
 
+// What a pixel counts: a power of two, so that it costs no digit, and the largest float 16 times is still a float.
+#define ONE 0.0625f
+
 __kernel void tile_average(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_IN(inDepth),
                            SURFACE_OUT(outIrradiance), const TileAverageParams params) {
     Pixel px = itemPixel();
@@ -37,8 +40,8 @@ __kernel void tile_average(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SUR
                        mad3((vfloat)((float)px.y), splat3(rays->rayDy), splat3(rays->ray)));
     vfloat along = dot3(normalWs, ray);
 
-    vfloat count = 1.0f;
-    vfloat3 sum = load3(inIrradiance, px);
+    vfloat count = ONE;
+    vfloat3 sum = scale3(ONE, load3(inIrradiance, px));
     for (int dy = -1; dy <= 2; ++dy) {
         int y = px.y + dy;
         if (y < 0 || y >= height) continue;
@@ -51,7 +54,7 @@ __kernel void tile_average(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SUR
             vmask counts = (x + laneIndex() >= 0) & (x + laneIndex() < width) & (tapDepth > 0.0f);
             counts &= fabs(plane) <= reach * sqrt((float)(dx * dx + dy * dy));
             counts &= dot3(normalWs, loadFrom3(inNormalWs, x, y)) >= params.minNormalCosine;
-            vfloat weight = vselect(counts, 1.0f, 0.0f);
+            vfloat weight = vselect(counts, ONE, 0.0f);
             count += weight;
             sum = mad3(weight, loadFrom3(inIrradiance, x, y), sum);
         }

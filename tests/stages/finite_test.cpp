@@ -34,11 +34,13 @@ constexpr Output kRadiometric[] = {Output::DirectIrradiance, Output::IndirectIrr
                                    Output::Indirect, Output::Color};
 
 // Runs the frame, expects finite outputs, and gives them all, one after another.
-std::vector<float> outputsOf(Pipeline& pipeline, const FrameImages& frame, Estimator estimator, int rsmMinify = 1) {
+std::vector<float> outputsOf(Pipeline& pipeline, const FrameImages& frame, Estimator estimator, int rsmMinify = 1,
+                             Rotation rotation = Rotation::Noise) {
     Settings settings;
     settings.estimator = estimator;
     settings.sampleCount = 7;
     settings.rsmMinify = rsmMinify;
+    settings.rotation = rotation;
     settings.animatesNoise = false;  // runs are compared with one another
     pipeline.setFrame(frame.inputs());
     pipeline.run(settings);
@@ -120,6 +122,7 @@ TEST_P(Finite, OutputsWhateverInputsHold) {
                 for (int x = 0; x < image.extent().widthPx; ++x) put(image, x, y, value);
         }
         for (const Estimator estimator : {Estimator::Disk, Estimator::Sum}) outputsOf(pipeline_, frame, estimator);
+        outputsOf(pipeline_, frame, Estimator::Disk, 1, Rotation::Tile);
         if (GetParam().options.rsmRecords != 0) outputsOf(pipeline_, frame, Estimator::Sum, 2);
     }
 }
@@ -134,6 +137,7 @@ TEST_P(SmallFrame, Runs) {
     Pipeline pipeline{Device(GetParam().caps, GetParam().options)};
     for (const Estimator estimator : {Estimator::Disk, Estimator::Sum})
         outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), estimator);
+    outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), Estimator::Disk, 1, Rotation::Tile);
     if (GetParam().options.rsmRecords != 0)
         outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), Estimator::Disk, 2);
 }

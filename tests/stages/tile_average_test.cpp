@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <random>
 
 #include <glm/ext/matrix_clip_space.hpp>
@@ -170,6 +173,28 @@ TEST_P(TileAverage, AConstantStaysAndNothingBleeds) {
                     << x << ", " << y;
         }
     }
+}
+
+TEST_P(TileAverage, OutputsAreFiniteWhateverThePictureHolds) {
+    const Extent extent{37, 11};
+    Picture p = walls(extent, nowhere, nowhere);
+    std::mt19937 random(5);
+    const auto one = [&random](auto... values) {
+        const float all[] = {float(values)...};
+        return all[random() % std::size(all)];
+    };
+    constexpr float kMax = std::numeric_limits<float>::max(), kLeast = std::numeric_limits<float>::denorm_min();
+    HostImage normal(PixelFormat::RGBA32F, extent);
+    std::vector<glm::dvec3> irradiance(std::size_t(extent.widthPx * extent.heightPx));
+    for (int i = 0; i < extent.widthPx * extent.heightPx; ++i) {
+        p.depth.pixel(0, 0)[i] = one(0, kLeast, 5, 5, 5, kMax);
+        for (int c = 0; c < 3; ++c) normal.pixel(0, 0)[4 * i + c] = one(0, -1, 1, 1, 1, 65504, -65504);
+        irradiance[std::size_t(i)] = glm::dvec3(0.9 * double(kMax));  // rounding may go up
+    }
+    p.normalWs = toHalf(normal.view());
+    const HostImage actual = averaged(p, irradiance);
+    for (int i = 0; i < 4 * extent.widthPx * extent.heightPx; ++i)
+        ASSERT_NE(std::bit_cast<std::uint32_t>(actual.pixel(0, 0)[i]) & 0x7f800000u, 0x7f800000u) << i;
 }
 
 TEST_P(TileAverage, RefusesSurfacesOfOtherExtents) {

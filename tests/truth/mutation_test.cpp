@@ -150,7 +150,7 @@ constexpr Mutation kEstimators[] = {
     {"polar disk without its pdf", "common/rsm_gather.clh", "weight *= 2.0f * u", "weight *= 1.0f"},
     {"squared disk with u^2 for u^3", "common/rsm_gather.clh", "4.0f * u * unitRadius", "4.0f * unitRadius"},
     {"tile of half the turns", "common/rsm_gather.clh", "1.0f / 16.0f, 0.5f / 16.0f", "1.0f / 32.0f, 0.25f"},
-    {"tile's mean without its own pixel", "tile_average.cl", "vfloat count = 1.0f", "vfloat count = 0.0f"},
+    {"tile's mean without its own pixel", "tile_average.cl", "vfloat count = ONE", "vfloat count = 0.0f"},
     {"disk with a lit border", "common/rsm_gather.clh", "vselect(isInside, g * weight, 0.0f)", "g * weight"},
 };
 

@@ -157,7 +157,12 @@ TEST_P(TileAverage, AConstantStaysAndNothingBleeds) {
     const Extent extent{53, 17};
     const auto isSky = [](int x, int y) { return (x * 5 + y * 3) % 11 == 0; };
     const auto isBehind = [](int x, int y) { return (x / 5 + y / 3) % 2 == 1; };
-    const Picture p = walls(extent, isSky, isBehind);
+    Picture p = walls(extent, isSky, isBehind);
+    // The front wall so near that sky, taken for a point, would lie on it: depth alone says what is sky.
+    p.camera.clipFromView = glm::ortho(-4.0f, 5.0f, -1.5f, 1.0f, 0.01f, 30.0f);
+    for (int i = 0; i < extent.widthPx * extent.heightPx; ++i)
+        if (float& depth = p.depth.pixel(0, 0)[i]; depth > 0.0f) depth -= 4.98f;
+    p.normalWs = walls(extent, nowhere, isBehind).normalWs;
     std::vector<glm::dvec3> irradiance;
     for (int y = 0; y < extent.heightPx; ++y)
         for (int x = 0; x < extent.widthPx; ++x)

@@ -4,7 +4,7 @@
 //   16 times as many samples, and nothing of the tile is left to see. Its middle lies half a pixel aside.
 //   q lies on p's surface if n_p.n_q >= minNormalCosine and its point is at most planeTolerance times the way to q off p's
 //   plane; the way is across the view, at p's depth, so that the scene's scale does not matter. p itself always counts.
-//   Interleaved sampling: Keller & Heidrich 2001; that the mean must keep to a surface: Segovia et al. 2006.
+//   Interleaved sampling: Keller & Heidrich 2001.
 //   in   inIrradiance   lx
 //   in   inNormalWs, inDepth   unit; m, 0 on sky
 //   out  outIrradiance  lx, finite, between the least and the largest of those that count; 0 on sky

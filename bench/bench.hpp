@@ -23,6 +23,7 @@ const Variant& naive();
 const DeviceCaps& chosenDevice();
 
 void registerLowerResolution();
+void registerDenoiser();
 void registerRsmGather();
 
 }  // namespace earthshine::bench

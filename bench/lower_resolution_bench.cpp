@@ -8,6 +8,7 @@
 
 #include "bench.hpp"
 #include "interop/host_transport.hpp"
+#include "measure.hpp"
 #include "pipeline/make_params.hpp"
 #include "room_frame.hpp"
 #include "stages/bilateral_upsample_stage.hpp"
@@ -87,40 +88,21 @@ struct Frame {
     cl::Buffer pixels, count, pattern, noise;
 };
 
-/// Runs `launch` and counts the time of what it launches.
-void measure(benchmark::State& state, Frame& f, const std::function<void()>& launch) {
-    Device::Impl& impl = f.device.impl();
-    const auto launchAll = [&] {
-        impl.launches.clear();
-        launch();
-        impl.queue.finish();
-    };
-    launchAll();  // drivers compile at the first launch
-    for (auto _ : state) {
-        launchAll();
-        double seconds = 0.0;
-        for (const Launch& one : impl.launches)
-            seconds += 1e-9 * double(one.event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
-                                     one.event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
-        state.SetIterationTime(seconds);
-    }
-}
-
 void downsample(benchmark::State& state, Frame& f) {
     DownsampleStage stage(f.device);
-    measure(state, f, [&] {
+    measure(state, f.device, [&] {
         stage.enqueue({f.inputs.normalWs, f.inputs.depth, nullptr, f.lowNormalWs, f.lowDepth, nullptr}, f.stride);
     });
 }
 
 void gatherLow(benchmark::State& state, Frame& f) {
     RsmGatherStage stage(f.device);
-    measure(state, f, [&] { f.gatherLow(stage); });
+    measure(state, f.device, [&] { f.gatherLow(stage); });
 }
 
 void upsample(benchmark::State& state, Frame& f) {
     BilateralUpsampleStage stage(f.device);
-    measure(state, f, [&] {
+    measure(state, f.device, [&] {
         stage.enqueue({f.inputs.normalWs, f.inputs.depth, f.lowNormalWs, f.lowDepth, f.lowIrradiance, f.irradiance},
                       f.rays, f.stride);
     });
@@ -134,14 +116,14 @@ void interpolate(InterpolateStage& stage, Frame& f) {
 
 void interpolate(benchmark::State& state, Frame& f) {
     InterpolateStage stage(f.device);
-    measure(state, f, [&] { interpolate(stage, f); });
+    measure(state, f.device, [&] { interpolate(stage, f); });
 }
 
 void gatherList(benchmark::State& state, Frame& f) {
     InterpolateStage interpolateStage(f.device);
     interpolate(interpolateStage, f);
     RsmGatherListStage stage(f.device);
-    measure(state, f, [&] { stage.enqueue(f.gathered(), f.pixels, f.count, f.params); });
+    measure(state, f.device, [&] { stage.enqueue(f.gathered(), f.pixels, f.count, f.params); });
     i32 count = 0;
     f.device.impl().queue.enqueueReadBuffer(f.count, CL_TRUE, 0, sizeof count, &count);
     state.counters["pixels"] = count;

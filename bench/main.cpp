@@ -111,6 +111,7 @@ int main(int argc, char** argv) {
             "tuned", fmt::format("{} lanes, {} storage, {} x {} work-items a group", tuning.lanes,
                                  storageName(tuning.storage), tuning.localSizePx[0], tuning.localSizePx[1]));
         benchmark::AddCustomContext("revision", EARTHSHINE_REVISION);
+        bench::registerDenoiser();
         bench::registerLowerResolution();
         bench::registerRsmGather();
         bench::RatioReporter reporter;

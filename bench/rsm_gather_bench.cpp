@@ -7,6 +7,7 @@
 
 #include "bench.hpp"
 #include "interop/host_transport.hpp"
+#include "measure.hpp"
 #include "pipeline/make_params.hpp"
 #include "room_frame.hpp"
 #include "stages/blue_noise.hpp"
@@ -46,21 +47,10 @@ void gather(benchmark::State& state, Extent extent, int sampleCount, const Varia
     RsmGatherStage stage(device);
     const RsmGatherStage::Images surfaces{inputs.normalWs, inputs.depth, inputs.rsm, inputs.lights,
                                           pattern,         noise,        irradiance};
-    const auto launchAll = [&] {
-        impl.launches.clear();
+    measure(state, device, [&] {
         if (device.tuning().rsmRecords) packStage.enqueue(inputs.rsm, inputs.lights);
         stage.enqueue(surfaces, params.gather);
-        impl.queue.finish();
-    };
-    launchAll();  // drivers compile at the first launch
-    for (auto _ : state) {
-        launchAll();
-        double seconds = 0.0;
-        for (const Launch& launch : impl.launches)
-            seconds += 1e-9 * double(launch.event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
-                                     launch.event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
-        state.SetIterationTime(seconds);
-    }
+    });
     const double samples = double(extent.widthPx) * extent.heightPx * sampleCount;
     state.counters["Msamples/s"] = benchmark::Counter(1e-6 * samples, benchmark::Counter::kIsIterationInvariantRate);
 }

@@ -47,7 +47,8 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
     vfloat along = dot3(normal, ray);
     vfloat cosine = max(-along * rsqrt(dot3(ray, ray)), 0.25f);
 
-    vfloat inverseReach = 1.0f / (params.depthTolerance * vmad(depth, params.footprintPerM, params.footprintM));
+    vfloat reach = params.depthTolerance * vmad(depth, params.footprintPerM, params.footprintM);
+    vfloat inverseReach = 1.0f / max(reach, 1e-30f);
     float inverseNormal = 1.0f / params.normalTolerance;
     vfloat l = luminance(irradiance), inverseVariance = 0.0f;
     if (params.luminanceTolerance > 0.0f) {

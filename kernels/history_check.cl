@@ -18,7 +18,7 @@ __kernel void history_check(SURFACE_IN(inIrradiance), SURFACE_IN(inAccumulated),
     for (px.y = j * CONFIDENCE_TILE_PX; px.y < bottom; ++px.y) {
         for (px.x = i * CONFIDENCE_TILE_PX; px.x < (i + 1) * CONFIDENCE_TILE_PX; px.x += LANES) {
             if (px.x >= inIrradianceLayout.widthPx) break;
-            vfloat d = luminance(load3(inIrradiance, px)) - luminance(load3(inAccumulated, px));
+            vfloat d = min(luminance(load3(inIrradiance, px)), 1e15f) - luminance(load3(inAccumulated, px));
             d = vselect(px.x + laneIndex() < inIrradianceLayout.widthPx, d, 0.0f);
             sum += d;
             squares = vmad(d, d, squares);

@@ -98,6 +98,8 @@ __kernel void temporal(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE
     }
     vfloat3 normalWs = load3(inNormalWs, px);
     vfloat3 irradiance = load3(inIrradiance, px);
+    // What is brighter than any light counts as this much: squares, here and in what follows, stay finite.
+    irradiance = make3(min(irradiance.x, 1e15f), min(irradiance.y, 1e15f), min(irradiance.z, 1e15f));
     int width = outIrradianceLayout.widthPx, height = outIrradianceLayout.heightPx;
 
     History h = {0.0f, zero3, 0.0f, 0.0f};

@@ -11,5 +11,6 @@ void addIndirect(Options& program);
 void addReference(Options& program);
 void addCompare(Options& program);
 void addQuality(Options& program);
+void addMotion(Options& program);
 
 }  // namespace earthshine::cli

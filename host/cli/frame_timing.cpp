@@ -72,6 +72,15 @@ std::string FrameTiming::table() const {
     return text;
 }
 
+double indirectMs(const std::vector<StageTime>& times) {
+    double sum = 0.0;
+    for (const StageTime& time : times)
+        for (const char* start : {"rsm_", "tile_average", "temporal", "history_", "atrous", "downsample",
+                                  "bilateral_upsample", "interpolate"})
+            if (time.stage.starts_with(start)) sum += time.ms;
+    return sum;
+}
+
 Stopwatch::Stopwatch() : startNs_(nowNs()) {}
 
 double Stopwatch::ms() const {

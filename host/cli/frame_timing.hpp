@@ -40,6 +40,9 @@ private:
     bool isCold_ = true;
 };
 
+/// Milliseconds of the stages of indirect light: what reads the RSM, what denoises, what changes the resolution.
+double indirectMs(const std::vector<StageTime>& times);
+
 /// Milliseconds since it was made.
 class Stopwatch {
 public:

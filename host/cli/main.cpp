@@ -24,6 +24,7 @@ int runProgram(int argc, char** argv) {
     addReference(program.options());
     addCompare(program.options());
     addQuality(program.options());
+    addMotion(program.options());
     addDevices(program.options());
     if (!program.parse(argc, argv)) return 0;
     openConsole(quiet ? Verbosity::Quiet : verbose ? Verbosity::Verbose : Verbosity::Normal);

@@ -118,11 +118,6 @@ struct Run {
     double estimatorMs = 0, frameMs = 0;
 };
 
-/// Stages of indirect light.
-bool isIndirect(const std::string& stage) {
-    return stage.starts_with("rsm_") || stage == "temporal" || stage.starts_with("history_") || stage == "atrous";
-}
-
 Run runSetting(Pipeline& pipeline, const QualitySetting& setting, int repeats, const std::string& title) {
     std::vector<double> estimator, frame;
     Progress progress(title);
@@ -133,12 +128,9 @@ Run runSetting(Pipeline& pipeline, const QualitySetting& setting, int repeats, c
         if (setting.frames == 1) pipeline.forgetHistory();
         pipeline.run(setting.settings, [&](double part) { progress.update((i + part) / runs); });
         if (i == 0) continue;  // compiles
-        double sum = 0.0, all = 0.0;
-        for (const StageTime& stage : pipeline.stageTimes()) {
-            all += stage.ms;
-            if (isIndirect(stage.stage)) sum += stage.ms;
-        }
-        estimator.push_back(sum);
+        double all = 0.0;
+        for (const StageTime& stage : pipeline.stageTimes()) all += stage.ms;
+        estimator.push_back(indirectMs(pipeline.stageTimes()));
         frame.push_back(all);
     }
     return {pipeline.read(Output::IndirectIrradiance), pipeline.read(Output::DirectIrradiance),

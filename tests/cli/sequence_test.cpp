@@ -80,8 +80,9 @@ TEST_F(Sequences, ARestartGivesTheSameFilesAsTheWholeRun) {
     test::writeText(
         folder / "sun.json",
         R"({"keys": [{"frame": 0, "sun": [135, 50, 2000]}, {"frame": 3, "sun": [200, 40, 9000], "step": true}]})");
-    const Arguments moves{"--frames", "5", "--path",     "orbit:3",        "--animate", "on",
-                          "--fps",    "4", "--sun-path", path("sun.json"), "--aov",     "all"};
+    const Arguments moves{"--frames",   "5",          "--path",         "orbit:3", "--animate", "on",       "--fps",
+                          "4",          "--sun-path", path("sun.json"), "--aov",   "all",       "--preset", "balanced",
+                          "--feedback", "1"};  // history, so that the frames before count
     Arguments whole = moves, rest = moves;
     whole.insert(whole.end(), {"-o", path("whole.###.exr"), "--sheet", path("whole.sheet.#.png")});
     rest.insert(rest.end(), {"-o", path("rest.###.exr"), "--sheet", path("rest.sheet.#.png"), "--first-frame", "3"});
@@ -220,6 +221,28 @@ TEST_F(Sequences, CtrlCLeavesWholeFramesAlone) {
         }
     }
     EXPECT_TRUE(fs::exists(path("a.0002.exr")));
+}
+
+// `motion`: errors of every frame, and a jump that history forgets.
+TEST_F(Sequences, MotionMeasuresFlickerAndGhosts) {
+    test::writeText(folder / "list.json", fmt::format(R"({{
+        "scenes": [{{"file": "{}/cornell.glb"}}],
+        "settings": [{{"preset": "balanced"}}, {{"preset": "balanced", "accumulate": false}}]}})",
+                                                      EARTHSHINE_DATA_DIR));
+    const Result result = runEarthshine({"motion", path("list.json"), "-o", path("m.json"), "--size", "64x36",
+                                         "--rsm-size", "64", "--shadow-size", "64", "--frames", "20", "--jump", "11"});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("8 frames after the sun jumped"));
+    const nlohmann::json scene = json("m.json")["scenes"][0];
+    const nlohmann::json with = scene["rows"][0], without = scene["rows"][1];
+    EXPECT_EQ(with["relMse"].size(), 20u);
+    EXPECT_EQ(with["flicker"].size(), 18u);  // neither into the first frame nor into the jump
+    // History is what it is for: less error and less flicker than a filter alone has, and more than the truth's own.
+    EXPECT_LT(with["relMse"][10], without["relMse"][10]);
+    EXPECT_LT(with["flicker"][9], without["flicker"][9]);
+    EXPECT_GT(with["flicker"][9], scene["fullSumFlicker"]);
+    // Without history a past changes only which noise there is.
+    EXPECT_LT(double(with["relMseAfterJump"]), 3.0 * double(with["relMseWithoutPast"]));
 }
 
 TEST_F(Sequences, WarmupIsNeitherTimedNorAsked) {

@@ -105,6 +105,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{{"render", "@scene", "-o", "@/a.png", "--device", "no such thing"}, 2, "no such thing"},
         Refusal{{"render", "@scene", "-o", "@/a.png", "--gl", "metal"}, 2, "\"metal\""},
         Refusal{{"render", "@scene", "-o", "@/a.png", "--camera", "nobody"}, 2, "no camera \"nobody\""},
+        Refusal{{"motion", "@/no.json", "-o", "@/m.json"}, 1, "no.json: cannot be read"},
+        Refusal{
+            {"motion", "@/no.json", "-o", "@/m.json", "--frames", "9", "--jump", "4"}, 2, "--jump: 4 leaves less than"},
         Refusal{{"devices", "--device", "1000"}, 2, "1000"}));
 
 INSTANTIATE_TEST_SUITE_P(

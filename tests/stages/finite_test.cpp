@@ -34,14 +34,7 @@ constexpr Output kRadiometric[] = {Output::DirectIrradiance, Output::IndirectIrr
                                    Output::Indirect, Output::Color};
 
 // Runs the frame, expects finite outputs, and gives them all, one after another.
-std::vector<float> outputsOf(Pipeline& pipeline, const FrameImages& frame, Estimator estimator, int rsmMinify = 1,
-                             Rotation rotation = Rotation::Noise) {
-    Settings settings;
-    settings.estimator = estimator;
-    settings.sampleCount = 7;
-    settings.rsmMinify = rsmMinify;
-    settings.rotation = rotation;
-    settings.animatesNoise = false;  // runs are compared with one another
+std::vector<float> outputsOf(Pipeline& pipeline, const FrameImages& frame, const Settings& settings) {
     pipeline.setFrame(frame.inputs());
     pipeline.run(settings);
     std::vector<float> all;
@@ -55,6 +48,32 @@ std::vector<float> outputsOf(Pipeline& pipeline, const FrameImages& frame, Estim
     EXPECT_GT(pipeline.exposure(), 0.0f);
     pipeline.read(Output::Display);
     return all;
+}
+
+std::vector<float> outputsOf(Pipeline& pipeline, const FrameImages& frame, Estimator estimator, int rsmMinify = 1) {
+    Settings settings;
+    settings.estimator = estimator;
+    settings.sampleCount = 7;
+    settings.rsmMinify = rsmMinify;
+    settings.animatesNoise = false;  // runs are compared with one another
+    return outputsOf(pipeline, frame, settings);
+}
+
+// Everything that the denoiser can do, at once.
+Settings denoising() {
+    Settings settings = settingsOf(Preset::Balanced);
+    settings.fireflyFactor = 4.0f;
+    settings.filterLuminance = 4.0f;
+    settings.feedback = 1;
+    return settings;
+}
+
+// The turned kernel of a tile and its mean.
+Settings tiled() {
+    Settings settings;
+    settings.sampleCount = 7;
+    settings.rotation = Rotation::Tile;
+    return settings;
 }
 
 struct Input {
@@ -122,8 +141,35 @@ TEST_P(Finite, OutputsWhateverInputsHold) {
                 for (int x = 0; x < image.extent().widthPx; ++x) put(image, x, y, value);
         }
         for (const Estimator estimator : {Estimator::Disk, Estimator::Sum}) outputsOf(pipeline_, frame, estimator);
-        outputsOf(pipeline_, frame, Estimator::Disk, 1, Rotation::Tile);
+        outputsOf(pipeline_, frame, tiled());
         if (GetParam().options.rsmRecords != 0) outputsOf(pipeline_, frame, Estimator::Sum, 2);
+    }
+}
+
+// What history has once taken in, filters spread and frames pass on: junk must not live on in it.
+TEST_P(Finite, HistoryForgetsJunk) {
+    for (const FilterWeights weights : {FilterWeights::Plane, FilterWeights::Depth}) {
+        Settings settings = denoising();
+        settings.filterWeights = weights;
+        for (const float value : kValues) {
+            SCOPED_TRACE(value);
+            pipeline_.forgetHistory();
+            const FrameImages sound = reference::makeSyntheticFrame(smallFrame());
+            FrameImages junk = reference::makeSyntheticFrame(smallFrame());
+            for (const Input& input : kInputs) {
+                HostImage& image = junk.*input.image;
+                for (int y = 0; y < image.extent().heightPx; ++y)
+                    for (int x = y % 2; x < image.extent().widthPx; x += 2) put(image, x, y, value);
+            }
+            // And light as bright as numbers go on a sound scene: its squares are what overflows.
+            FrameImages blinding = reference::makeSyntheticFrame(smallFrame());
+            for (int y = 0; y < blinding.rsmFlux.extent().heightPx; ++y)
+                for (int x = 0; x < blinding.rsmFlux.extent().widthPx; ++x) put(blinding.rsmFlux, x, y, value);
+            for (int i = 0; i < 2; ++i) outputsOf(pipeline_, sound, settings);
+            for (int i = 0; i < 3; ++i) outputsOf(pipeline_, junk, settings);
+            for (int i = 0; i < 3; ++i) outputsOf(pipeline_, blinding, settings);
+            for (int i = 0; i < 3; ++i) outputsOf(pipeline_, sound, settings);
+        }
     }
 }
 
@@ -137,9 +183,10 @@ TEST_P(SmallFrame, Runs) {
     Pipeline pipeline{Device(GetParam().caps, GetParam().options)};
     for (const Estimator estimator : {Estimator::Disk, Estimator::Sum})
         outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), estimator);
-    outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), Estimator::Disk, 1, Rotation::Tile);
+    outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), tiled());
     if (GetParam().options.rsmRecords != 0)
         outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), Estimator::Disk, 2);
+    for (int i = 0; i < 2; ++i) outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), denoising());
 }
 
 std::vector<reference::Variant> smallFrameVariants() {

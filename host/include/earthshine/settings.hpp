@@ -26,7 +26,8 @@ enum class Rotation {
     Off,    ///< not at all: bands, no noise
     Noise,  ///< blue noise turns and shifts it
     Tile,   ///< by one of 16 angles, the same every 4 x 4 pixels; then the mean over as many, as far as they are one
-            ///< surface: no noise, and all pixels' samples lie on 16 lines if the pattern is one
+            ///< surface: no noise. Pixels that Upsampling::Interpolate gathers in full stay unaveraged; frames turn all
+            ///< pixels alike, which antiLag takes for a little change of light
 };
 inline constexpr const char* kRotationNames[] = {"off", "noise", "tile"};
 

@@ -4,8 +4,8 @@
 //   Dachsbacher & Stamminger 2005, whose weights leave the pdf out. Ours: s lies in the disk of the given radius by the
 //   pattern's pdf, so the mean is that of the full sum for any sample count and any radius that covers the map; beyond
 //   the map's border is black, at no bias, since texels there have no flux. Each pixel shifts the pattern's radii and turns
-//   it by blue noise (Cranley & Patterson 1976), so that what few samples miss becomes fine noise instead of bands; or it
-//   turns it by one of 16 angles, whose mean tile_average.cl takes over 4 x 4 pixels. Each frame moves all pixels'
+//   it by blue noise (Cranley & Patterson 1976), so that what few samples miss becomes fine noise instead of bands; or
+//   it turns it by one of 16 angles, whose mean tile_average.cl takes over 4 x 4 pixels. Each frame moves all pixels'
 //   patterns on by the same step of a low-discrepancy sequence (frame_params.hpp), so that a mean over frames converges
 //   as one long pattern does, and a single frame's noise stays blue.
 //   Radii are r(u) of a uniform u, each with its pdf over the unit disk, (du/dr) / (2 pi r):

@@ -1,9 +1,9 @@
 // tile_average: the mean over a tile of the turned pattern (rsm_gather.cl), as far as it lies on one surface.
 //   out(p) = mean of in(q) over those q of [x - 1; x + 2] x [y - 1; y + 2] that lie on p's surface
-//   Any 4 x 4 pixels hold each of the tile's 16 turns once: where all of them count, the mean is that of one pattern with
-//   16 times as many samples, and nothing of the tile is left to see. Its middle lies half a pixel aside.
-//   q lies on p's surface if n_p.n_q >= minNormalCosine and its point is at most planeTolerance times the way to q off p's
-//   plane; the way is across the view, at p's depth, so that the scene's scale does not matter. p itself always counts.
+//   Any 4 x 4 pixels hold each of the tile's 16 turns once: where all of them count, the mean is that of one pattern
+//   with 16 times as many samples, and nothing of the tile is left to see. Its middle lies half a pixel aside.
+//   q lies on p's surface if n_p.n_q >= minNormalCosine and its point is at most planeTolerance times the way to q off
+//   p's plane; the way is across the view, at p's depth, so that the scene's scale does not matter. p itself always counts.
 //   Interleaved sampling: Keller & Heidrich 2001.
 //   in   inIrradiance   lx
 //   in   inNormalWs, inDepth   unit; m, 0 on sky
@@ -31,8 +31,8 @@ __kernel void tile_average(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SUR
     vfloat3 normalWs = load3(inNormalWs, px);
     vfloat reach = params.planeTolerance * vmad(depth, params.footprintPerM, params.footprintM);
 
-    // q's distance from p's plane is n.(x_q - x_p); with x = origin + depth ray, both linear in the pixel, it comes down
-    // to these dot products.
+    // q's distance from p's plane is n.(x_q - x_p); with x = origin + depth ray, both linear in the pixel, it comes
+    // down to these dot products.
     const ViewRays* rays = &params.cameraRays;
     vfloat originX = dot3(normalWs, splat3(rays->originDx)), originY = dot3(normalWs, splat3(rays->originDy));
     vfloat rayX = dot3(normalWs, splat3(rays->rayDx)), rayY = dot3(normalWs, splat3(rays->rayDy));

@@ -111,6 +111,19 @@ void historyCheck(benchmark::State& state, const Variant& variant, Extent extent
         kFloat * 6 * f.pixels);
 }
 
+void tileAverage(benchmark::State& state, const Variant& variant, Extent extent) {
+    const Frame f(variant, extent);
+    TileAverageStage stage(f.device);
+    const Surface in = f.three(), out = f.three();
+    const TileAverageParams params = f.params(Settings(), false).tileAverage;
+    measure(
+        state, f.device,
+        [&] {
+            stage.enqueue({in, f.inputs.normalWs, f.inputs.depth, out}, params);
+        },
+        kFloat * (3 + 3 + 1 + 3) * f.pixels);  // irradiance, normal, depth; out
+}
+
 /// Pass `pass` of a kernel's iterations: step 1, 2, 4, ...
 void atrous(benchmark::State& state, const Variant& variant, Extent extent, FilterKernel kernel, std::size_t pass) {
     const Frame f(variant, extent);
@@ -173,6 +186,7 @@ void registerDenoiser() {
             addStage("temporal_still", [&variant, extent](auto& s) { temporal(s, variant, extent, false); });
             addStage("temporal_moving", [&variant, extent](auto& s) { temporal(s, variant, extent, true); });
             addStage("history_check", [&variant, extent](auto& s) { historyCheck(s, variant, extent); });
+            addStage("tile_average", [&variant, extent](auto& s) { tileAverage(s, variant, extent); });
             const auto addPass = [&](const char* name, FilterKernel kernel, std::size_t pass) {
                 addStage(name, [=, &variant](auto& s) { atrous(s, variant, extent, kernel, pass); });
             };

@@ -4,9 +4,10 @@
 //   Dachsbacher & Stamminger 2005, whose weights leave the pdf out. Ours: s lies in the disk of the given radius by the
 //   pattern's pdf, so the mean is that of the full sum for any sample count and any radius that covers the map; beyond
 //   the map's border is black, at no bias, since texels there have no flux. Each pixel shifts the pattern's radii and turns
-//   it by blue noise (Cranley & Patterson 1976), so that what few samples miss becomes fine noise instead of bands. Each
-//   frame moves all pixels' patterns on by the same step of a low-discrepancy sequence (frame_params.hpp), so that a mean
-//   over frames converges as one long pattern does, and a single frame's noise stays blue.
+//   it by blue noise (Cranley & Patterson 1976), so that what few samples miss becomes fine noise instead of bands; or
+//   it turns it by one of 16 angles, whose mean tile_average.cl takes over 4 x 4 pixels. Each frame moves all pixels'
+//   patterns on by the same step of a low-discrepancy sequence (frame_params.hpp), so that a mean over frames converges
+//   as one long pattern does, and a single frame's noise stays blue.
 //   Radii are r(u) of a uniform u, each with its pdf over the unit disk, (du/dr) / (2 pi r):
 //     area     r = sqrt(u)   1 / pdf = pi
 //     polar    r = u         1 / pdf = 2 pi u
@@ -38,15 +39,19 @@ __kernel void rsm_gather(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm
     vfloat3 normalWs = load3(inNormalWs, px);
     vfloat3 positionWs = positionFromDepth(&params.cameraRays, px.x + laneIndex(), (vint)(px.y), depth);
 
-    vfloat shift = 0.5f / (float)params.sampleCount, cosNoise = 1.0f, sinNoise = 0.0f;
-    if (params.rotates) {
+    vfloat shift = 0.5f / (float)params.sampleCount, cosOwn = 1.0f, sinOwn = 0.0f;
+    if (params.rotation == ROTATION_NOISE) {
         __global const float* from = noise + (px.y % ROTATION_NOISE_SIZE_PX) * ROTATION_NOISE_SIZE_PX +
                                      px.x % ROTATION_NOISE_SIZE_PX;
         shift = *(__global const vfloat*)from;
-        cosNoise = *(__global const vfloat*)(from + ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX);
-        sinNoise = *(__global const vfloat*)(from + 2 * ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX);
+        cosOwn = *(__global const vfloat*)(from + ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX);
+        sinOwn = *(__global const vfloat*)(from + 2 * ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX);
+    } else if (params.rotation == ROTATION_TILE) {
+        vfloat turn = tileTurn(px.x + laneIndex(), (vint)(px.y));
+        cosOwn = es_cosTau(turn);
+        sinOwn = es_sinTau(turn);
     }
     irradiance = diskIrradiance(RSM_ARG(rsm), lights, pattern, &params,
-                                patternMove(&params, shift, cosNoise, sinNoise), positionWs, normalWs);
+                                patternMove(&params, shift, cosOwn, sinOwn), positionWs, normalWs);
     store3(outIrradiance, px, select3(isSurface, irradiance, make3(0.0f, 0.0f, 0.0f)));
 }

@@ -22,22 +22,26 @@ __kernel void rsm_gather_list(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_I
     vint y = pixel.v / outIrradianceLayout.widthPx, x = pixel.v - y * outIrradianceLayout.widthPx;
     vfloat3 positionWs = positionFromDepth(&params.cameraRays, x, y, gather1(inDepth, x, y));
 
-    VfloatLanes shift, cosNoise, sinNoise;
+    VfloatLanes shift, cosOwn, sinOwn;
     shift.v = 0.5f / (float)params.sampleCount;
-    cosNoise.v = 1.0f;
-    sinNoise.v = 0.0f;
-    if (params.rotates) {
+    cosOwn.v = 1.0f;
+    sinOwn.v = 0.0f;
+    if (params.rotation == ROTATION_NOISE) {
         VintLanes texel;
         texel.v = y % ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX + x % ROTATION_NOISE_SIZE_PX;
         for (int i = 0; i < LANES; ++i) {
             __global const float* from = noise + texel.lane[i];
             shift.lane[i] = from[0];
-            cosNoise.lane[i] = from[ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX];
-            sinNoise.lane[i] = from[2 * ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX];
+            cosOwn.lane[i] = from[ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX];
+            sinOwn.lane[i] = from[2 * ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX];
         }
+    } else if (params.rotation == ROTATION_TILE) {
+        vfloat turn = tileTurn(x, y);
+        cosOwn.v = es_cosTau(turn);
+        sinOwn.v = es_sinTau(turn);
     }
     vfloat3 irradiance = diskIrradiance(RSM_ARG(rsm), lights, pattern, &params,
-                                        patternMove(&params, shift.v, cosNoise.v, sinNoise.v), positionWs,
+                                        patternMove(&params, shift.v, cosOwn.v, sinOwn.v), positionWs,
                                         gather3(inNormalWs, x, y));
     scatter3(outIrradiance, x, y, irradiance);
 }

@@ -75,8 +75,8 @@ std::string FrameTiming::table() const {
 double indirectMs(const std::vector<StageTime>& times) {
     double sum = 0.0;
     for (const StageTime& time : times)
-        for (const char* start :
-             {"rsm_", "temporal", "history_", "atrous", "downsample", "bilateral_upsample", "interpolate"})
+        for (const char* start : {"rsm_", "tile_average", "temporal", "history_", "atrous", "downsample",
+                                  "bilateral_upsample", "interpolate"})
             if (time.stage.starts_with(start)) sum += time.ms;
     return sum;
 }

@@ -92,14 +92,20 @@ void IndirectPass::gather(const FrameSurfaces& inputs, const FrameParams& params
     uploadPattern(params.gather.sampleCount, params.pattern);
     rsmGather_.enqueue({inputs.normalWs, inputs.depth, inputs.rsm, inputs.lights, pattern_, noise_, sampled_},
                        params.gather);
+    if (!params.averagesTile) return;
+    if (!tileAverage_) tileAverage_.emplace(device_);
+    ensure(device_, averaged_, PixelFormat::RGBA32F, sampled_.extent());
+    tileAverage_->enqueue({sampled_, inputs.normalWs, inputs.depth, averaged_}, params.tileAverage);
+    irradiance_ = averaged_;
 }
 
 void IndirectPass::denoise(const FrameSurfaces& inputs, const FrameSurfaces& previous, const FrameParams& params) {
     const Surface& accumulated = params.feedbackPasses > 0 ? accumulated_ : next_.irradiance;
-    temporal_.enqueue({sampled_, inputs.normalWs, inputs.depth, inputs.motion.empty() ? nullptr : &inputs.motion,
+    temporal_.enqueue({irradiance_, inputs.normalWs, inputs.depth, inputs.motion.empty() ? nullptr : &inputs.motion,
                        hasHistory_ ? previous.normalWs : inputs.normalWs, hasHistory_ ? previous.depth : inputs.depth,
                        history_, confidence_, accumulated, next_.length, next_.moment},
                       params.temporal);
+    // The check takes pixels for independent, which those of a tile's mean are not.
     if (params.checksHistory) historyCheck_.enqueue({sampled_, accumulated, confidence_}, params.historyCheck);
 
     const Surface* filtered = &accumulated;
@@ -128,8 +134,8 @@ void IndirectPass::enqueue(const FrameSurfaces& inputs, const FrameSurfaces& pre
     }
     const FrameSurfaces& seen = isLower ? lower_->picked() : inputs;
     allocate(seen.depth.extent(), params);
-    gather(seen, params, progress);
     irradiance_ = sampled_;
+    gather(seen, params, progress);
     if (params.denoises)
         denoise(seen, isLower ? lower_->previous() : previous, params);
     else

@@ -14,6 +14,7 @@
 #include "stages/rsm_pack_stage.hpp"
 #include "stages/rsm_sum_stage.hpp"
 #include "stages/temporal_stage.hpp"
+#include "stages/tile_average_stage.hpp"
 
 namespace earthshine {
 
@@ -58,7 +59,8 @@ private:
     HistoryCheckStage historyCheck_;
     AtrousStage atrous_;
 
-    std::optional<LowerResolution> lower_;  ///< once it was asked for
+    std::optional<TileAverageStage> tileAverage_;  ///< once it was asked for
+    std::optional<LowerResolution> lower_;         ///< the same
 
     cl::Buffer noise_, pattern_, confidence_;
     int patternSize_ = 0;
@@ -67,6 +69,7 @@ private:
     int divisor_ = 1;
     bool interpolated_ = false;
     Surface sampled_;                 ///< this frame's estimate
+    Surface averaged_;                ///< its mean over tiles
     Surface accumulated_;             ///< temporal's output, where history takes a filtered picture instead
     Surface filtered_[2];             ///< the filter's passes in turn
     HistorySurfaces history_, next_;  ///< what the previous frame left; what this one leaves

@@ -16,6 +16,17 @@ float lengthOf(const f32x4& v) {
     return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
 
+// What the mean of a tile takes for one surface.
+TileAverageParams tileAverageParams(const FrameGeometry& frame) {
+    TileAverageParams p{};
+    p.cameraRays = frame.cameraRays;
+    p.minNormalCosine = 0.9f;  // 26 degrees
+    p.planeTolerance = 0.5f;
+    p.footprintM = lengthOf(frame.cameraRays.originDx);
+    p.footprintPerM = lengthOf(frame.cameraRays.rayDx);
+    return p;
+}
+
 TemporalParams temporalParams(const Settings& settings, const FrameGeometry& frame) {
     // How far off its plane a surface may be found again: depths of 32 bits and motion of 16 are that wrong, and curved
     // surfaces that flat, from one pixel to the next.
@@ -96,7 +107,9 @@ FrameParams makeParams(const Settings& settings, const FrameGeometry& full) {
     p.gather.lightCount = frame.lightCount;
     p.gather.sampleCount = settings.sampleCount;
     p.gather.radiusUv = settings.radiusUv;
-    p.gather.rotates = settings.rotates ? 1 : 0;
+    p.gather.rotation = settings.rotation == Rotation::Off     ? ROTATION_OFF
+                        : settings.rotation == Rotation::Noise ? ROTATION_NOISE
+                                                               : ROTATION_TILE;
     p.gather.mapping = settings.mapping == RadiusMapping::Area    ? MAPPING_AREA
                        : settings.mapping == RadiusMapping::Polar ? MAPPING_POLAR
                                                                   : MAPPING_SQUARED;
@@ -107,6 +120,8 @@ FrameParams makeParams(const Settings& settings, const FrameGeometry& full) {
     p.sum.cameraRays = frame.cameraRays;
     p.sum.rsmSizePx = mapSizePx;
     p.sum.lightCount = frame.lightCount;
+    p.averagesTile = settings.estimator == Estimator::Disk && settings.rotation == Rotation::Tile;
+    p.tileAverage = tileAverageParams(frame);
     p.accumulates = settings.accumulates;
     p.denoises = settings.accumulates || settings.filterIterations > 0;
     p.temporal = temporalParams(settings, frame);

@@ -13,6 +13,7 @@
 #include "rsm_pack_params.h"
 #include "rsm_sum_params.h"
 #include "temporal_params.h"
+#include "tile_average_params.h"
 #include "tone_map_params.h"
 
 namespace earthshine {
@@ -40,6 +41,8 @@ struct FrameParams {
     RsmPackParams pack{};
     RsmGatherParams gather{};
     RsmSumParams sum{};         ///< firstRowPx is each launch's own
+    bool averagesTile = false;  ///< after the gather
+    TileAverageParams tileAverage{};
     bool denoises = false;      ///< temporal runs: it also readies a single frame for the filter
     bool accumulates = false;   ///< and its output is kept for the next frame
     TemporalParams temporal{};  ///< hasMotion is the stage's own

@@ -15,7 +15,7 @@ typedef struct RsmGatherParams {
     i32 lightCount;   // >= 0
     i32 sampleCount;  // a light, [1; 4096]
     f32 radiusUv;     // (0; 2], fraction of the map's side
-    i32 rotates;      // 0 or 1: each pixel turns and shifts the pattern by its noise
+    i32 rotation;     // ROTATION_*: how each pixel moves the pattern
     f32 frameShift;   // [0; 1 / sampleCount): this frame moves u by it, of all pixels
     f32 frameTurnCos, frameTurnSin;  // and the pattern by this turn
     f32 mapScale;     // (0.1; 1]: a light's projection fills this part of the map's side, less where blocks stick out
@@ -23,6 +23,10 @@ typedef struct RsmGatherParams {
     i32 padding0, padding1;
 } RsmGatherParams;
 ES_ASSERT_SIZE(RsmGatherParams, 144);
+
+#define ROTATION_OFF 0    // not: half a step along u
+#define ROTATION_NOISE 1  // by its noise
+#define ROTATION_TILE 2   // turns it by one of 16 angles, in an order of 4 x 4 pixels; half a step along u
 
 #define ROTATION_NOISE_SIZE_PX 64
 

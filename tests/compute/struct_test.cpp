@@ -23,6 +23,7 @@
 #include "rsm_sum_params.h"
 #include "surface_layout.h"
 #include "temporal_params.h"
+#include "tile_average_params.h"
 #include "tone_map_params.h"
 #include "unpack_params.h"
 

@@ -164,6 +164,48 @@ PatternMove patternMove(int x, int y) {
     return {(rank(0) + turn) / (kSize * kSize), turn};
 }
 
+PatternMove tileMove(int x, int y, int sampleCount) {
+    constexpr int kOrder[4][4] = {{0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
+    return {0.5 / sampleCount, (kOrder[y % 4][x % 4] + 0.5) / 16.0};
+}
+
+TileAverage tileAverage(const Camera& camera, Extent extent, const std::vector<SurfacePoint>& points,
+                        const std::vector<glm::dvec3>& irradiance) {
+    TileAverage result;
+    result.irradiance.resize(points.size(), glm::dvec3(0.0));
+    const glm::dmat4 viewFromWorld(camera.viewFromWorld);
+    for (int y = 0; y < extent.heightPx; ++y) {
+        for (int x = 0; x < extent.widthPx; ++x) {
+            const auto at = std::size_t(y * extent.widthPx + x);
+            const SurfacePoint& p = points[at];
+            if (!p.isValid) continue;
+            const double depth = -(viewFromWorld * glm::dvec4(p.position, 1.0)).z;
+            const auto onPlaneOfView = [&](double px) { return unproject(camera, {px / extent.widthPx, 0.5}, depth); };
+            const double pixelM = glm::length(onPlaneOfView(1.0) - onPlaneOfView(0.0));
+            double count = 1.0;
+            glm::dvec3 sum = irradiance[at];
+            for (int ty = std::max(y - 1, 0); ty <= std::min(y + 2, extent.heightPx - 1); ++ty) {
+                for (int tx = std::max(x - 1, 0); tx <= std::min(x + 2, extent.widthPx - 1); ++tx) {
+                    const auto tap = std::size_t(ty * extent.widthPx + tx);
+                    const SurfacePoint& q = points[tap];
+                    if (tap == at || !q.isValid) continue;
+                    const double reach = 0.5 * pixelM * std::hypot(tx - x, ty - y);
+                    const double plane = std::fabs(glm::dot(p.normal, q.position - p.position)) / reach;
+                    const double margin = std::min(glm::dot(p.normal, q.normal) - 0.9, 1.0 - plane);
+                    result.clearance = std::min(result.clearance, std::fabs(margin));
+                    ++result.taps;
+                    if (margin < 0.0) continue;
+                    ++result.accepted;
+                    count += 1.0;
+                    sum += irradiance[tap];
+                }
+            }
+            result.irradiance[at] = sum / count;
+        }
+    }
+    return result;
+}
+
 PatternMove frameMove(int index, int sampleCount) {
     // R2: with g the root of g^3 = g + 1, (index / g, index / g^2) modulo 1.
     double g = 1.0;

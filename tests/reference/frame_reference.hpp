@@ -55,6 +55,18 @@ struct PatternMove {
 /// The move of pixel (x, y) by the two tiles of data/noise/blue_noise.pgm.
 PatternMove patternMove(int x, int y);
 
+/// The move of pixel (x, y) by a tile of 4 x 4: half a step of `sampleCount`, and a turn.
+PatternMove tileMove(int x, int y, int sampleCount);
+
+/// tile_average.cl over a picture of the given camera.
+struct TileAverage {
+    std::vector<glm::dvec3> irradiance;
+    int taps = 0, accepted = 0;  ///< surfaces around surfaces, and those that counted
+    double clearance = 1.0;      ///< no tap was nearer to the other decision: a cosine, or a part of the reach
+};
+TileAverage tileAverage(const Camera& camera, Extent extent, const std::vector<SurfacePoint>& points,
+                        const std::vector<glm::dvec3>& irradiance);
+
 /// The further move of frame `index`: r^2 by a fraction of a sample's step, by the R2 sequence.
 PatternMove frameMove(int index, int sampleCount);
 

@@ -68,6 +68,14 @@ Settings denoising() {
     return settings;
 }
 
+// The turned kernel of a tile and its mean.
+Settings tiled() {
+    Settings settings;
+    settings.sampleCount = 7;
+    settings.rotation = Rotation::Tile;
+    return settings;
+}
+
 struct Input {
     const char* name;
     HostImage FrameImages::*image;
@@ -133,6 +141,7 @@ TEST_P(Finite, OutputsWhateverInputsHold) {
                 for (int x = 0; x < image.extent().widthPx; ++x) put(image, x, y, value);
         }
         for (const Estimator estimator : {Estimator::Disk, Estimator::Sum}) outputsOf(pipeline_, frame, estimator);
+        outputsOf(pipeline_, frame, tiled());
         if (GetParam().options.rsmRecords != 0) outputsOf(pipeline_, frame, Estimator::Sum, 2);
     }
 }
@@ -174,6 +183,7 @@ TEST_P(SmallFrame, Runs) {
     Pipeline pipeline{Device(GetParam().caps, GetParam().options)};
     for (const Estimator estimator : {Estimator::Disk, Estimator::Sum})
         outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), estimator);
+    outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), tiled());
     if (GetParam().options.rsmRecords != 0)
         outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), Estimator::Disk, 2);
     for (int i = 0; i < 2; ++i) outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), denoising());

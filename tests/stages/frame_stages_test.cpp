@@ -64,8 +64,10 @@ Expected expectedOf(const FrameImages& images, const Settings& settings, int fra
     const reference::PatternMove step =
         reference::frameMove(settings.animatesNoise ? frameIndex : 0, settings.sampleCount);
     const auto moveOf = [&](int x, int y) {
-        const reference::PatternMove move =
-            settings.rotates ? reference::patternMove(x, y) : reference::PatternMove{0.5 / settings.sampleCount, 0.0};
+        const reference::PatternMove move = settings.rotation == Rotation::Noise ? reference::patternMove(x, y)
+                                            : settings.rotation == Rotation::Tile
+                                                ? reference::tileMove(x, y, settings.sampleCount)
+                                                : reference::PatternMove{0.5 / settings.sampleCount, 0.0};
         return reference::PatternMove{move.shift + step.shift, move.turn + step.turn};
     };
     for (std::size_t l = 0; l < frame.lights.size(); ++l) {
@@ -107,7 +109,7 @@ TEST_P(FrameStages, AgreeWithTheReference) {
         Settings settings;
         settings.sampleCount = 13;
         settings.radiusUv = 0.4f;
-        settings.rotates = extent.widthPx != 7;
+        settings.rotation = extent.widthPx != 7 ? Rotation::Noise : Rotation::Off;
         settings.animatesNoise = extent.widthPx != 1;
         const Expected expected = expectedOf(images, settings, frameIndex);
         pipeline.setFrame(images.inputs());
@@ -139,6 +141,46 @@ TEST_P(FrameStages, AgreeWithTheReferenceOfEveryDisk) {
             const Expected expected = expectedOf(images, settings, frameIndex++);
             pipeline.run(settings);
             expectClose(pipeline.read(Output::IndirectIrradiance), expected.disk, expected.points, kRelative);
+        }
+    }
+}
+
+// On random surfaces, where next to nothing is averaged, and on a wall across the view, where all of a tile is.
+TEST_P(FrameStages, AgreeWithTheReferenceOfTheTile) {
+    Pipeline pipeline{Device(GetParam().caps, GetParam().options)};
+    int frameIndex = 0;
+    for (const Extent extent : {Extent{37, 11}, Extent{7, 3}}) {
+        for (const bool isWall : {false, true}) {
+            SCOPED_TRACE(testing::Message() << extent.widthPx << " x " << extent.heightPx << ", wall " << isWall);
+            reference::SyntheticOptions options;
+            options.extent = extent;
+            FrameImages images = reference::makeSyntheticFrame(options);
+            if (isWall) {
+                const glm::mat4 worldFromView = glm::inverse(images.camera.viewFromWorld);
+                HostImage normal(PixelFormat::RGBA32F, extent);
+                for (int i = 0; i < extent.widthPx * extent.heightPx; ++i) {
+                    float& depth = images.depth.pixel(0, 0)[i];
+                    if (depth > 0.0f) depth = 5.0f;
+                    for (int c = 0; c < 4; ++c) normal.pixel(0, 0)[4 * i + c] = c < 3 ? worldFromView[2][c] : 1.0f;
+                }
+                images.normalWs = toHalf(normal.view());
+            }
+            pipeline.setFrame(images.inputs());
+            for (const DiskPattern pattern : {DiskPattern::Hammersley, DiskPattern::Line}) {
+                Settings settings;
+                settings.sampleCount = 5;
+                settings.radiusUv = 0.7f;
+                settings.pattern = pattern;
+                settings.mapping = RadiusMapping::Squared;
+                settings.rotation = Rotation::Tile;
+                Expected expected = expectedOf(images, settings, frameIndex++);
+                const reference::TileAverage average =
+                    reference::tileAverage(images.camera, extent, expected.points, expected.disk);
+                ASSERT_GT(average.clearance, 1e-4);  // floats decide as doubles do
+                EXPECT_EQ(average.accepted == average.taps, isWall);
+                pipeline.run(settings);
+                expectClose(pipeline.read(Output::IndirectIrradiance), average.irradiance, expected.points, kRelative);
+            }
         }
     }
 }

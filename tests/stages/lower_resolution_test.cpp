@@ -421,11 +421,11 @@ TEST_P(LowerResolution, AListIsGatheredAsAllPixelsAre) {
         std::vector<i32> surfaces;
         for (i32 i = 0; i < extent.widthPx * extent.heightPx; ++i)
             if (images.depth.pixel(0, 0)[i] > 0.0f) surfaces.push_back(i);
-        for (const bool rotates : {false, true}) {
+        for (const Rotation rotation : {Rotation::Off, Rotation::Noise, Rotation::Tile}) {
             Settings settings;
             settings.sampleCount = kSamples;
             settings.radiusUv = 0.4f;
-            settings.rotates = rotates;
+            settings.rotation = rotation;
             const FrameGeometry geometry{makeViewRays(frame.camera, extent), extent, inputs.rsm.sizePx,
                                          inputs.rsm.lightCount, inputs.shadowExtent};
             const RsmGatherParams params = makeParams(settings, geometry).gather;

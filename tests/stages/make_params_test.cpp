@@ -37,6 +37,8 @@ std::vector<unsigned char> bytesOf(const FrameParams& p) {
     append(p.pack);
     append(p.gather);
     append(p.sum);
+    append(p.averagesTile);
+    append(p.tileAverage);
     append(p.directLight);
     append(p.exposure);
     append(p.toneMap);
@@ -112,7 +114,8 @@ TEST(MakeParams, EveryFieldIsASetting) {
 TEST(MakeParams, TheFramesGeometryGoesThrough) {
     const FrameGeometry g = geometry();
     const FrameParams p = makeParams(Settings(), g);
-    for (const ViewRays& rays : {p.gather.cameraRays, p.sum.cameraRays, p.directLight.cameraRays})
+    for (const ViewRays& rays :
+         {p.gather.cameraRays, p.sum.cameraRays, p.tileAverage.cameraRays, p.directLight.cameraRays})
         EXPECT_EQ(std::memcmp(&rays, &g.cameraRays, sizeof rays), 0);
     EXPECT_EQ(p.gather.rsmSizePx, 64);
     EXPECT_EQ(p.gather.mapScale, 1.0f);

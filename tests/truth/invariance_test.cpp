@@ -64,11 +64,11 @@ TEST_F(Invariance, DiskOverSamplesRadiusMapSizeAndFrustum) {
         // that of the emitter: 256 are some 12 to 40 on it.
         for (const double radiusUv : {1.4142136, 1.7, 2.0}) {
             for (const int sampleCount : {256, 1024, 4096}) {
-                for (const bool rotates : {true, false}) {
+                for (const Rotation rotation : {Rotation::Noise, Rotation::Off}) {
                     Settings settings = wholeDisk(sampleCount, radiusUv);
-                    settings.rotates = rotates;
+                    settings.rotation = rotation;
                     expectTruth(fmt::format("{}px_{}m_{}spp_radius_{}{}", map.sizePx, map.sideM, sampleCount, radiusUv,
-                                            rotates ? "" : "_fixed"),
+                                            rotation == Rotation::Noise ? "" : "_fixed"),
                                 formFactor(frame, settings), sum, kBar);
                 }
             }
@@ -92,6 +92,37 @@ TEST_F(Invariance, DiskOverPatternsAndMappings) {
                                             kRadiusMappingNames[int(mapping)], sampleCount, radiusUv),
                                 formFactor(frame, settings), sum, kBar);
                 }
+            }
+        }
+    }
+}
+
+// The 16 turns of a tile, averaged, have the mean of the full sum: few samples, since 16 lines are 16 times as many;
+// and at lower resolution. The mean lies half a pixel aside and is cut off at the picture's border, which costs up to a
+// pixel's part of what the picture changes by: hence many pixels. All of them sample the same radii, so few samples
+// miss the same part of a peak everywhere, until frames move them: hence eight frames.
+TEST_F(Invariance, TileOverSamplesRadiusAndDivisor) {
+    DrawnScene parallel(platesWith(kAbove)), perpendicular(platesWith(kBeside));
+    const Extent extent{320, 320};
+    const FrameImages above = parallel.draw(squareView(kAbove), extent, beamOnto(kEmitter, kLux, 1.0), 256);
+    const FrameImages beside = perpendicular.draw(squareView(kBeside), extent, beamOnto(kEmitter, kLux, 1.0), 256);
+    for (const int divisor : {1, 2}) {
+        for (const int sampleCount : {16, 64, 256}) {
+            for (const double radiusUv : {1.4142136, 2.0}) {
+                Settings settings = wholeDisk(sampleCount, radiusUv);
+                settings.pattern = DiskPattern::Line;
+                settings.mapping = RadiusMapping::Squared;
+                settings.rotation = Rotation::Tile;
+                settings.divisor = divisor;
+                settings.animatesNoise = true;
+                const auto meanOfFrames = [&](const FrameImages& frame) {
+                    double sum = 0.0;
+                    for (int i = 0; i < 8; ++i) sum += formFactor(frame, settings) / 8.0;
+                    return sum;
+                };
+                const std::string what = fmt::format("_1/{}_{}spp_radius_{}", divisor, sampleCount, radiusUv);
+                expectTruth("parallel" + what, meanOfFrames(above), 0.199825, kBar);
+                expectTruth("perpendicular" + what, meanOfFrames(beside), 0.200044, kBar);
             }
         }
     }

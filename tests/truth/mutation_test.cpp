@@ -58,6 +58,13 @@ std::vector<Check> makeChecks() {
         add(mapping == RadiusMapping::Polar ? "polar line" : "squared line", above, squareView(above), 64, beam, 32,
             line, irradiance, parallel, parallel);
     }
+    // Across a shared edge all light comes from one side: half of the turns would not do.
+    const Rectangle beside{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}};
+    Settings tile = wholeDisk(256);
+    tile.pattern = DiskPattern::Line;
+    tile.mapping = RadiusMapping::Squared;
+    tile.rotation = Rotation::Tile;
+    add("tile", beside, squareView(beside), 128, beam, 256, tile, irradiance, kRadiosity * 0.200044, parallel);
     add("radiance", above, squareView(above), 16, beam, 32, fullSum(), Output::Indirect, kAlbedo / kPi * parallel,
         parallel);
     // What faces away, and what lies behind the emitter.
@@ -142,6 +149,8 @@ constexpr Mutation kEstimators[] = {
     {"disk that does not wrap", "common/rsm_gather.clh", "u = u - floor(u)", "u = u"},
     {"polar disk without its pdf", "common/rsm_gather.clh", "weight *= 2.0f * u", "weight *= 1.0f"},
     {"squared disk with u^2 for u^3", "common/rsm_gather.clh", "4.0f * u * unitRadius", "4.0f * unitRadius"},
+    {"tile of half the turns", "common/rsm_gather.clh", "1.0f / 16.0f, 0.5f / 16.0f", "1.0f / 32.0f, 0.25f"},
+    {"tile's mean without its own pixel", "tile_average.cl", "vfloat count = ONE", "vfloat count = 0.0f"},
     {"disk with a lit border", "common/rsm_gather.clh", "vselect(isInside, g * weight, 0.0f)", "g * weight"},
 };
 

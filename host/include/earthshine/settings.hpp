@@ -21,6 +21,16 @@ enum class DiskPattern {
 };
 inline constexpr const char* kDiskPatternNames[] = {"hammersley", "line"};
 
+/// How each pixel moves the pattern.
+enum class Rotation {
+    Off,    ///< not at all: bands, no noise
+    Noise,  ///< blue noise turns and shifts it
+    Tile,   ///< by one of 16 angles, the same every 4 x 4 pixels; then the mean over as many, as far as they are one
+            ///< surface: no noise. Pixels that Upsampling::Interpolate gathers in full stay unaveraged; frames turn all
+            ///< pixels alike, which antiLag takes for a little change of light
+};
+inline constexpr const char* kRotationNames[] = {"off", "noise", "tile"};
+
 /// How the disk's samples are spread over radii, each by its own pdf, so that the mean is the same.
 enum class RadiusMapping {
     Area,     ///< uniform by area
@@ -64,7 +74,7 @@ struct Settings {
     int sampleCount = 256;                  ///< [1; 4096] - disk: RSM texels a pixel
     float radiusUv = 1.4143f;               ///< (0; 2] (fraction of the RSM's side) - disk: radius; sqrt(2) covers the
                                             ///< map from anywhere, less gives up energy for less noise
-    bool rotates = true;                    ///< disk: blue noise turns the pattern at each pixel; off: bands, no noise
+    Rotation rotation = Rotation::Noise;    ///< disk: how each pixel moves the pattern
     bool animatesNoise = true;              ///< disk: each frame moves the pattern, so that frames' mean converges
     DiskPattern pattern = DiskPattern::Hammersley;  ///< disk: where samples lie before noise moves them
     RadiusMapping mapping = RadiusMapping::Area;    ///< disk: how samples are spread over radii
@@ -115,13 +125,14 @@ void forEachSetting(SettingsT& s, Visitor&& visit) {
     visit(SettingInfo{"radius", "of the RSM's side", 1e-4, 2,
                       "disk: radius around the pixel's own projection; below 1.4143 far texels are left out"},
           s.radiusUv);
-    visit(SettingInfo{"rotate", "", 0, 1,
-                      "disk: blue noise turns the pattern at each pixel; off: bands instead of noise"},
-          s.rotates);
+    visit(SettingInfo{"rotation", "", 0, 2,
+                      "disk: pixels turn the pattern by blue noise, by a tile of 4x4 and average it, or not (bands)",
+                      kRotationNames},
+          s.rotation);
     visit(SettingInfo{"animate-noise", "", 0, 1,
                       "disk: each frame turns and shifts the pattern on, for means over frames"},
           s.animatesNoise);
-    visit(SettingInfo{"pattern", "", 0, 1, "disk: samples all over it, or along one line, which noise must turn",
+    visit(SettingInfo{"pattern", "", 0, 1, "disk: samples all over it, or along one line, which pixels must turn",
                       kDiskPatternNames},
           s.pattern);
     visit(

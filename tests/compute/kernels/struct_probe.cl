@@ -18,6 +18,7 @@
 #include "rsm_sum_params.h"
 #include "surface_layout.h"
 #include "temporal_params.h"
+#include "tile_average_params.h"
 #include "tone_map_params.h"
 #include "unpack_params.h"
 #include "bilateral_upsample_params.h"

@@ -91,13 +91,13 @@ struct Settings {
     int filterIterations = 0;    ///< [0; 7] - iterations of the spatial filter, each with twice the step; 0 = none
     FilterKernel filterKernel = FilterKernel::Separable;
     FilterWeights filterWeights = FilterWeights::Plane;
-    float filterDepth = 0.25f;     ///< [0.001; 1000] - plane: m off the plane a m aside; depth: m a step
-    float filterNormal = 0.3f;     ///< [0.001; 1000] - squared difference of unit normals at which a tap counts for
-                                   ///< nothing (plane) or 1/e (depth)
-    float filterLuminance = 0.0f;  ///< [0; 1000] (standard deviations) - plane: luminance difference at which a tap
-                                   ///< counts for nothing; 0 = any
-    float filterFade = 1024.0f;    ///< [1; 1024] (frames) - history longer than this weakens the filter in proportion,
-                                 ///< and a step twice as wide from half of it on
+    float filterDepth = 0.25f;      ///< [0.001; 1000] - plane: m off the plane a m aside; depth: m a step
+    float filterNormal = 0.3f;      ///< [0.001; 1000] - squared difference of unit normals at which a tap counts for
+                                    ///< nothing (plane) or 1/e (depth)
+    float filterLuminance = 0.0f;   ///< [0; 1000] (standard deviations) - plane: luminance difference at which a tap
+                                    ///< counts for nothing; 0 = any
+    float filterFade = 1024.0f;     ///< [1; 1024] (frames) - history longer than this weakens the filter in proportion,
+                                    ///< and a step twice as wide from half of it on
     int feedback = 0;               ///< [0; 7] - accumulate: history remembers what this many filter iterations make
     float shadowBiasTexels = 0.5f;  ///< [0; 16] (shadow map texels) - depth bias, constant part
     float shadowSlopeBiasTexels = 1.5f;  ///< [0; 16] (shadow map texels) - depth bias a unit of slope

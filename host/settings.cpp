@@ -22,7 +22,6 @@ Settings settingsOf(Preset preset) {
         s.antiLag = 0.0f;
         s.filterWeights = FilterWeights::Depth;
         s.filterDepth = 0.2f;
-        s.filterNormal = 0.3f;
         return s;
     }
     // Near texels are few and bright: uniform samples find them as fireflies. Measured at 8 samples and 32 frames of
@@ -50,6 +49,12 @@ void validate(const Settings& settings) {
                                              *info.unit ? " " : "", info.unit));
         }
     });
+    if (settings.fireflyFactor > 0.0f && settings.fireflyFactor < 1.0f)
+        throw UsageError(fmt::format("firefly: {} would darken what is like its neighbours; 0 or at least 1",
+                                     settings.fireflyFactor));
+    if (settings.antiLag > 0.0f && settings.antiLag < 2.0f)
+        throw UsageError(fmt::format("anti-lag: {} would drop history for noise's sake; 0 or at least 2",
+                                     settings.antiLag));
     if (settings.divisor == 3) throw UsageError("divisor: 3 is not 1, 2 or 4");
     if (settings.divisor > 1 && settings.upsampling == Upsampling::Interpolate && settings.estimator == Estimator::Sum)
         throw UsageError("upsampling: interpolate gathers the rest from a disk; use it with --estimator disk");

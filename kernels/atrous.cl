@@ -36,6 +36,12 @@ static int rowOf(int i, int height, int step) {
     return longer + (i - split) / rows + (i - split) % rows * step;
 }
 
+// Of a tap i steps away in a dimension with this many on each side. (No table: Mesa 22.3's rusticl crashes on an array in
+// a kernel's argument that is read at a place known at run time only.)
+static float shareOf(const AtrousParams* params, int i, int radius) {
+    return radius == 0 ? 1.0f : i == 0 ? params->share0 : abs(i) == 1 ? params->share1 : params->share2;
+}
+
 __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), SURFACE_IN(inLength),
                      SURFACE_IN(inMoment), SURFACE_OUT(outIrradiance), const AtrousParams params) {
     Pixel px = itemPixel();
@@ -95,14 +101,14 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
     bool isInner = px.x >= spanPx && px.x + LANES + spanPx <= width;
     vfloat sumWeights = 0.0f;
     vfloat3 sum = make3(0.0f, 0.0f, 0.0f);
-    int t = 0;
     for (int j = -params.radiusY; j <= params.radiusY; ++j, slope += slopeY, offset += offsetY) {
         int y = px.y + j * params.stepPx;
+        float shareJ = shareOf(&params, j, params.radiusY);
         vfloat slopeI = slope, offsetI = offset;
-        for (int i = -params.radiusX; i <= params.radiusX; ++i, ++t, slopeI += slopeX, offsetI += offsetX) {
+        for (int i = -params.radiusX; i <= params.radiusX; ++i, slopeI += slopeX, offsetI += offsetX) {
             int x = px.x + i * params.stepPx;
             if ((i == 0 && j == 0) || y < 0 || y >= height || x + LANES <= 0 || x >= width) continue;
-            const AtrousTap at = params.taps[t];
+            float inverseWay2 = 1.0f / (float)(i * i + j * j);
             vfloat tapDepth = loadFrom1(inDepth, x, y);
             vfloat3 tap = loadFrom3(inIrradiance, x, y);
             vfloat3 turn = sub3(loadFrom3(inNormalWs, x, y), normal);
@@ -113,19 +119,19 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
             if (params.weights == ATROUS_WEIGHTS_PLANE) {
                 vfloat plane = vmad(tapDepth, slopeI, offsetI);
                 vfloat dl = luminance(tap) - l;
-                vfloat near = vmad(plane * plane, -at.inverseWay2, 1.0f - turned);  // 1 - t
+                vfloat near = vmad(plane * plane, -inverseWay2, 1.0f - turned);  // 1 - t
                 near = max(vmad(-dl * dl, inverseVariance, near), 0.0f);
                 weight = near * near;
             } else {
-                float inverseWay = sqrt(at.inverseWay2) / params.depthTolerance;
+                float inverseWay = sqrt(inverseWay2) / params.depthTolerance;
                 weight = es_exp(-fabs(tapDepth - depth) * cosine * inverseWay - turned);
             }
-            weight = vselect(isThere, at.share * weight, 0.0f);
+            weight = vselect(isThere, shareJ * shareOf(&params, i, params.radiusX) * weight, 0.0f);
             sumWeights += weight;
             sum = mad3(weight, tap, sum);
         }
     }
-    float centre = params.taps[(2 * params.radiusX + 1) * (2 * params.radiusY + 1) / 2].share;
+    float centre = shareOf(&params, 0, params.radiusX) * shareOf(&params, 0, params.radiusY);
     sumWeights = vmad(fade, sumWeights, centre);
     sum = mad3(fade, sum, scale3(centre, irradiance));
     store3(outIrradiance, px, select3(isSurface, scale3(1.0f / sumWeights, sum), make3(0.0f, 0.0f, 0.0f)));

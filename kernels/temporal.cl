@@ -5,16 +5,17 @@
 //   Where none did, a 3 x 3 search with looser bounds rescues what it can; where that finds nothing, n starts at 1.
 //   Nehab et al. 2007; Schied et al. 2017, who compare depths: a plane's distance is as strict on slopes as it is ahead.
 //   c is history_confidence's. A sample brighter than fireflyFactor times everything near it and than its history
-//   is cut to that, also when it has no history.
+//   is cut to that, also when it has no history; unless all else is dark.
 //   in   inIrradiance     lx: this frame's estimate
 //   in   inNormalWs, inDepth   unit; m, 0 on sky
 //   in   inMotion         xy: px to the same point in the previous frame, z: m, previous depth minus this; if hasMotion
 //   in   prevNormalWs, prevDepth   of the previous frame
 //   in   historyIrradiance  lx
 //   in   historyLength    frames, >= 1; 0 on sky
-//   in   historyMoment    lx^2: mean squared luminance of the samples
+//   in   historyMoment    lx^2: mean squared luminance of the samples; if keepsMoment
 //   in   confidence       one float a tile of CONFIDENCE_TILE_PX, rows of tiles; if usesConfidence
-//   out  outIrradiance, outLength, outMoment   finite; 0 on sky
+//   out  outIrradiance, outLength, outMoment   finite; 0 on sky; the moment if keepsMoment
+//   out  outChange        lx: luminance of the sample, so limited, less that of outIrradiance; finite, 0 on sky
 //   Work 2D, one item per LANES pixels of a row, any local size; items past the edge return.
 
 #include "geometry.clh"
@@ -72,21 +73,77 @@ static void addTaps(History* h, SURFACE_IN(prevNormalWs), SURFACE_IN(prevDepth),
         vint x = left + i, y = top + j;
         vmask isInside = isWanted & (x >= 0) & (x < width) & (y >= 0) & (y < height);
         if (!anyLane(isInside)) continue;
-        vfloat depth, length, moment;
+        vfloat depth, length, moment = 0.0f;
         vfloat3 normal, irradiance;
         if (isRow) {
             depth = loadFrom1(prevDepth, rowX + i, rowY + j);
             normal = loadFrom3(prevNormalWs, rowX + i, rowY + j);
             irradiance = loadFrom3(historyIrradiance, rowX + i, rowY + j);
             length = loadFrom1(historyLength, rowX + i, rowY + j);
-            moment = loadFrom1(historyMoment, rowX + i, rowY + j);
+            if (params->keepsMoment) moment = loadFrom1(historyMoment, rowX + i, rowY + j);
         } else {
             vint inX = clampInt(x, 0, width - 1), inY = clampInt(y, 0, height - 1);
             depth = gather1(prevDepth, inX, inY);
             normal = gather3(prevNormalWs, inX, inY);
             irradiance = gather3(historyIrradiance, inX, inY);
             length = gather1(historyLength, inX, inY);
-            moment = gather1(historyMoment, inX, inY);
+            if (params->keepsMoment) moment = gather1(historyMoment, inX, inY);
+        }
+        vfloat dx = toVfloat(x) - plane->x, dy = toVfloat(y) - plane->y;
+        vfloat weight = side == 2 ? (1.0f - fabs(dx)) * (1.0f - fabs(dy)) : 1.0f / (1.0f + dx * dx + dy * dy);
+        vmask isSame = isInside & isSameSurface(plane, params, looseness, dx, dy, depth, normal);
+        weight = vselect(isSame, weight, 0.0f);
+        h->weight += weight;
+        h->irradiance = mad3(weight, irradiance, h->irradiance);
+        h->length = vmad(weight, length, h->length);
+        h->moment = vmad(weight, moment, h->moment);
+    }
+}
+
+// What history_confidence.cl made of the previous frame at that frame's pixel (x, y), linear between the centres of tiles.
+static vfloat confidenceAt(__global const float* confidence, SurfaceLayout layout, vint x, vint y) {
+    int columns = (layout.widthPx + CONFIDENCE_TILE_PX - 1) / CONFIDENCE_TILE_PX;
+    int rows = (layout.heightPx + CONFIDENCE_TILE_PX - 1) / CONFIDENCE_TILE_PX;
+    vfloat u = (toVfloat(x) + 0.5f) / CONFIDENCE_TILE_PX - 0.5f, v = (toVfloat(y) + 0.5f) / CONFIDENCE_TILE_PX - 0.5f;
+    vint left = toVint(floor(u)), top = toVint(floor(v));
+    u -= floor(u);
+    v -= floor(v);
+    vint column0 = clampInt(left, 0, columns - 1), column1 = clampInt(left + 1, 0, columns - 1);
+    vint row0 = clampInt(top, 0, rows - 1) * columns, row1 = clampInt(top + 1, 0, rows - 1) * columns;
+    vfloat upper = gatherFloats(confidence, row0 + column0), lower = gatherFloats(confidence, row1 + column0);
+    upper += u * (gatherFloats(confidence, row0 + column1) - upper);
+    lower += u * (gatherFloats(confidence, row1 + column1) - lower);
+    return upper + v * (lower - upper);
+}
+
+// Adds the side x side pixels from (left, top) on that saw the same surface: bilinear weights for 2, for 3 what is
+// nearer more. Where a work-item's pixels move alike, as nearly all do, they are rows, not to be gathered one by one.
+static void addTaps(History* h, SURFACE_IN(prevNormalWs), SURFACE_IN(prevDepth), SURFACE_IN(historyIrradiance),
+                    SURFACE_IN(historyLength), SURFACE_IN(historyMoment), const TemporalParams* params,
+                    const SeenPlane* plane, vmask isWanted, vint left, vint top, int side, float looseness) {
+    int width = prevDepthLayout.widthPx, height = prevDepthLayout.heightPx;
+    int rowX = firstLane(left), rowY = firstLane(top);
+    bool isRow = !anyLane(isWanted & ((left - laneIndex() != rowX) | (top != rowY)));
+    for (int tap = 0; tap < side * side; ++tap) {
+        int i = tap % side, j = tap / side;
+        vint x = left + i, y = top + j;
+        vmask isInside = isWanted & (x >= 0) & (x < width) & (y >= 0) & (y < height);
+        if (!anyLane(isInside)) continue;
+        vfloat depth, length, moment = 0.0f;
+        vfloat3 normal, irradiance;
+        if (isRow) {
+            depth = loadFrom1(prevDepth, rowX + i, rowY + j);
+            normal = loadFrom3(prevNormalWs, rowX + i, rowY + j);
+            irradiance = loadFrom3(historyIrradiance, rowX + i, rowY + j);
+            length = loadFrom1(historyLength, rowX + i, rowY + j);
+            if (params->keepsMoment) moment = loadFrom1(historyMoment, rowX + i, rowY + j);
+        } else {
+            vint inX = clampInt(x, 0, width - 1), inY = clampInt(y, 0, height - 1);
+            depth = gather1(prevDepth, inX, inY);
+            normal = gather3(prevNormalWs, inX, inY);
+            irradiance = gather3(historyIrradiance, inX, inY);
+            length = gather1(historyLength, inX, inY);
+            if (params->keepsMoment) moment = gather1(historyMoment, inX, inY);
         }
         vfloat dx = toVfloat(x) - plane->x, dy = toVfloat(y) - plane->y;
         vfloat weight = side == 2 ? (1.0f - fabs(dx)) * (1.0f - fabs(dy)) : 1.0f / (1.0f + dx * dx + dy * dy);
@@ -140,7 +197,7 @@ static vfloat neighbourLuminance(SURFACE_IN(inIrradiance), Pixel px) {
 __kernel void temporal(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), SURFACE_IN(inMotion),
                        SURFACE_IN(prevNormalWs), SURFACE_IN(prevDepth), SURFACE_IN(historyIrradiance),
                        SURFACE_IN(historyLength), SURFACE_IN(historyMoment), __global const float* restrict confidence,
-                       SURFACE_OUT(outIrradiance), SURFACE_OUT(outLength), SURFACE_OUT(outMoment),
+                       SURFACE_OUT(outIrradiance), SURFACE_OUT(outLength), SURFACE_OUT(outMoment), SURFACE_OUT(outChange),
                        const TemporalParams params) {
     Pixel px = itemPixel();
     if (isOutside(px, outIrradianceLayout)) return;
@@ -150,7 +207,8 @@ __kernel void temporal(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE
     if (!anyLane(isSurface)) {
         store3(outIrradiance, px, zero3);
         store1(outLength, px, 0.0f);
-        store1(outMoment, px, 0.0f);
+        store1(outChange, px, 0.0f);
+        if (params.keepsMoment) store1(outMoment, px, 0.0f);
         return;
     }
     vfloat3 normalWs = load3(inNormalWs, px);
@@ -165,50 +223,55 @@ __kernel void temporal(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE
         if (params.hasMotion) motion = load3(inMotion, px);
         // What moves by less than this stays: a picture at rest is not resampled for rounding's sake.
         vmask moves = isSurface & (max(fabs(motion.x), fabs(motion.y)) > 1.0f / 256.0f);
-        vfloat fx = toVfloat(px.x + laneIndex()), fy = (vfloat)((float)px.y);
-        vfloat depthThen = max(depth + motion.z, 0.0f);
+        vfloat fx = toVfloat(px.x + laneIndex()) + vselect(moves, motion.x, 0.0f);
+        vfloat fy = (float)px.y + vselect(moves, motion.y, 0.0f);
+        // Beyond this the taps are outside anyway; 32-bit integers must hold them.
+        fx = min(max(fx, -8.0f), (float)width + 8.0f);
+        fy = min(max(fy, -8.0f), (float)height + 8.0f);
+        vint left = toVint(floor(fx)), top = toVint(floor(fy));
+        SeenPlane plane = seenPlane(&params.previousRays, fx, fy, max(depth + motion.z, 0.0f), normalWs);
         if (!anyLane(moves)) {
-            SeenPlane plane = seenPlane(&params.previousRays, fx, fy, depthThen, normalWs);
-            vmask isSame = isSameSurface(&plane, &params, 1.0f, 0.0f, 0.0f, load1(prevDepth, px), load3(prevNormalWs, px));
+            vmask isSame = isSurface & isSameSurface(&plane, &params, 1.0f, 0.0f, 0.0f, load1(prevDepth, px),
+                                                     load3(prevNormalWs, px));
             h.weight = vselect(isSame, 1.0f, 0.0f);
             h.irradiance = load3(historyIrradiance, px);
             h.length = load1(historyLength, px);
-            h.moment = load1(historyMoment, px);
+            if (params.keepsMoment) h.moment = load1(historyMoment, px);
         } else {
-            // Beyond this the taps are outside anyway; 32-bit integers must hold them.
-            fx = min(max(fx + motion.x, -8.0f), (float)width + 8.0f);
-            fy = min(max(fy + motion.y, -8.0f), (float)height + 8.0f);
-            SeenPlane plane = seenPlane(&params.previousRays, fx, fy, depthThen, normalWs);
-            addTaps(&h, HISTORY_ARGS, &params, &plane, isSurface, toVint(floor(fx)), toVint(floor(fy)), 2, 1.0f);
-            vmask isLost = isSurface & (h.weight < 0.01f);
-            if (anyLane(isLost)) {
-                History rescued = {0.0f, zero3, 0.0f, 0.0f};
-                addTaps(&rescued, HISTORY_ARGS, &params, &plane, isLost, toVint(floor(fx + 0.5f)) - 1,
-                        toVint(floor(fy + 0.5f)) - 1, 3, 2.0f);
-                h.weight = vselect(isLost, rescued.weight, h.weight);
-                h.irradiance = select3(isLost, rescued.irradiance, h.irradiance);
-                h.length = vselect(isLost, rescued.length, h.length);
-                h.moment = vselect(isLost, rescued.moment, h.moment);
-            }
+            addTaps(&h, HISTORY_ARGS, &params, &plane, isSurface, left, top, 2, 1.0f);
         }
+        vmask isLost = isSurface & (h.weight < 0.01f);
+        if (anyLane(isLost)) {
+            History rescued = {0.0f, zero3, 0.0f, 0.0f};
+            addTaps(&rescued, HISTORY_ARGS, &params, &plane, isLost, toVint(floor(fx + 0.5f)) - 1,
+                    toVint(floor(fy + 0.5f)) - 1, 3, 2.0f);
+            h.weight = vselect(isLost, rescued.weight, h.weight);
+            h.irradiance = select3(isLost, rescued.irradiance, h.irradiance);
+            h.length = vselect(isLost, rescued.length, h.length);
+            h.moment = vselect(isLost, rescued.moment, h.moment);
+        }
+        if (params.usesConfidence) h.length *= confidenceAt(confidence, outIrradianceLayout, left, top);
     }
     vmask isRemembered = h.weight >= 0.01f;
     vfloat inverseWeight = vselect(isRemembered, 1.0f / max(h.weight, 0.01f), 0.0f);
     vfloat3 remembered = scale3(inverseWeight, h.irradiance);
     vfloat length = inverseWeight * h.length;
-    if (params.usesConfidence) length *= confidenceAt(confidence, px, outIrradianceLayout);
 
     if (params.fireflyFactor > 0.0f) {
         vfloat brightest = max(NEIGHBOUR_LUMINANCE(inIrradiance, px), luminance(remembered));
         vfloat l = luminance(irradiance);
-        irradiance = scale3(min(params.fireflyFactor * brightest / max(l, 1e-30f), 1.0f), irradiance);
+        vfloat limit = vselect(brightest > 0.0f, params.fireflyFactor * brightest, l);  // where all else is dark, none
+        irradiance = scale3(min(limit / max(l, 1e-30f), 1.0f), irradiance);
     }
     length = min(length + 1.0f, params.maxFrames);
     vfloat share = vselect(isRemembered, 1.0f / length, 1.0f);
-    vfloat l = luminance(irradiance);
-    vfloat moment = vmad(share, l * l - inverseWeight * h.moment, inverseWeight * h.moment);
     vfloat3 accumulated = mad3(share, sub3(irradiance, remembered), remembered);
+    vfloat l = luminance(irradiance);
     store3(outIrradiance, px, select3(isSurface, accumulated, zero3));
     store1(outLength, px, vselect(isSurface, length, 0.0f));
-    store1(outMoment, px, vselect(isSurface, max(moment, 0.0f), 0.0f));
+    store1(outChange, px, vselect(isSurface, l - luminance(accumulated), 0.0f));
+    if (params.keepsMoment) {
+        vfloat then = inverseWeight * h.moment;
+        store1(outMoment, px, vselect(isSurface, max(vmad(share, l * l - then, then), 0.0f), 0.0f));
+    }
 }

@@ -49,6 +49,11 @@ Surface::Surface(const Device& device, PixelFormat format, Extent extent) : form
     }
 }
 
+void ensure(const Device& device, Surface& surface, PixelFormat format, Extent extent) {
+    if (surface.empty() || surface.format() != format || surface.extent() != extent)
+        surface = Surface(device, format, extent);
+}
+
 void requireExtent(const char* stage, const char* name, const Surface& surface, Extent extent) {
     if (surface.extent() == extent) return;
     throw DeviceError(fmt::format("{}: {} is {} x {}, must be {} x {}", stage, name, surface.extent().widthPx,

@@ -30,6 +30,9 @@ private:
     cl::Memory memory_;
 };
 
+/// Makes `surface` anew if it is not one of this format and extent.
+void ensure(const Device& device, Surface& surface, PixelFormat format, Extent extent);
+
 cl::ImageFormat clImageFormat(PixelFormat format);
 
 /// Throws DeviceError "stage: name is ..., must be ..." if a surface is not of the extent that a stage needs.

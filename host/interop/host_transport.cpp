@@ -21,11 +21,6 @@ void checkImage(const std::string& name, const ImageView& image, PixelFormat for
                                      image.extent.heightPx, extent.widthPx, extent.heightPx));
 }
 
-void ensure(const Device& device, Surface& surface, PixelFormat format, Extent extent) {
-    if (surface.empty() || surface.format() != format || surface.extent() != extent)
-        surface = Surface(device, format, extent);
-}
-
 // Maps of one light after another in memory are one picture.
 bool areContiguous(const std::vector<LightMaps>& maps, ImageView LightMaps::*member) {
     for (std::size_t i = 1; i < maps.size(); ++i) {

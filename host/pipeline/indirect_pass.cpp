@@ -8,14 +8,6 @@
 
 namespace earthshine {
 
-namespace {
-
-void ensure(const Device& device, Surface& surface, PixelFormat format, Extent extent) {
-    if (surface.extent() != extent) surface = Surface(device, format, extent);
-}
-
-}  // namespace
-
 IndirectPass::IndirectPass(const Device& device)
     : device_(device),
       rsmPack_(device),
@@ -40,8 +32,12 @@ void IndirectPass::allocate(Extent extent, const FrameParams& params) {
     for (HistorySurfaces* h : {&history_, &next_}) {
         ensure(device_, h->irradiance, PixelFormat::RGBA32F, extent);
         ensure(device_, h->length, PixelFormat::R32F, extent);
-        ensure(device_, h->moment, PixelFormat::R32F, extent);
+        if (params.keepsMoment)
+            ensure(device_, h->moment, PixelFormat::R32F, extent);
+        else
+            h->moment = {};
     }
+    ensure(device_, change_, PixelFormat::R32F, extent);
     if (params.feedbackPasses > 0) ensure(device_, accumulated_, PixelFormat::RGBA32F, extent);
     if (!params.filterPasses.empty())
         for (Surface& surface : filtered_) ensure(device_, surface, PixelFormat::RGBA32F, extent);
@@ -103,10 +99,9 @@ void IndirectPass::denoise(const FrameSurfaces& inputs, const FrameSurfaces& pre
     const Surface& accumulated = params.feedbackPasses > 0 ? accumulated_ : next_.irradiance;
     temporal_.enqueue({irradiance_, inputs.normalWs, inputs.depth, inputs.motion.empty() ? nullptr : &inputs.motion,
                        hasHistory_ ? previous.normalWs : inputs.normalWs, hasHistory_ ? previous.depth : inputs.depth,
-                       history_, confidence_, accumulated, next_.length, next_.moment},
+                       history_, confidence_, accumulated, next_.length, next_.moment, change_},
                       params.temporal);
-    // The check takes pixels for independent, which those of a tile's mean are not.
-    if (params.checksHistory) historyCheck_.enqueue({sampled_, accumulated, confidence_}, params.historyCheck);
+    if (params.checksHistory) historyCheck_.enqueue({change_, confidence_}, params.historyCheck);
 
     const Surface* filtered = &accumulated;
     for (std::size_t pass = 0; pass < params.filterPasses.size(); ++pass) {
@@ -120,6 +115,7 @@ void IndirectPass::denoise(const FrameSurfaces& inputs, const FrameSurfaces& pre
     std::swap(history_, next_);
     hasHistory_ = params.accumulates;
     hasConfidence_ = params.checksHistory;
+    hasMoment_ = params.keepsMoment;
 }
 
 void IndirectPass::enqueue(const FrameSurfaces& inputs, const FrameSurfaces& previous, const FrameParams& params,

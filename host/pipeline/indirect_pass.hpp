@@ -23,9 +23,10 @@ class IndirectPass {
 public:
     explicit IndirectPass(const Device& device);
 
-    /// Did the previous frame, of this extent and divisor, leave a history, and was that checked?
-    bool hasHistory(Extent extent, int divisor) const {
-        return hasHistory_ && divisor_ == divisor && extent_ == extent;
+    /// Did the previous frame leave a history that a frame of this extent can use, and was that checked?
+    bool hasHistory(Extent extent, const Settings& settings) const {
+        return hasHistory_ && divisor_ == settings.divisor && extent_ == extent &&
+               (hasMoment_ || !keepsMoment(settings));
     }
     bool hasConfidence() const { return hasConfidence_; }
     /// The next frame begins anew.
@@ -72,8 +73,9 @@ private:
     Surface averaged_;                ///< its mean over tiles
     Surface accumulated_;             ///< temporal's output, where history takes a filtered picture instead
     Surface filtered_[2];             ///< the filter's passes in turn
+    Surface change_;                  ///< from history to this frame's estimate
     HistorySurfaces history_, next_;  ///< what the previous frame left; what this one leaves
-    bool hasHistory_ = false, hasConfidence_ = false;
+    bool hasHistory_ = false, hasConfidence_ = false, hasMoment_ = false;
     Surface irradiance_;  ///< one of the above
 };
 

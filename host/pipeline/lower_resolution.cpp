@@ -6,14 +6,6 @@
 
 namespace earthshine {
 
-namespace {
-
-void ensure(const Device& device, Surface& surface, PixelFormat format, Extent extent) {
-    if (surface.extent() != extent) surface = Surface(device, format, extent);
-}
-
-}  // namespace
-
 LowerResolution::LowerResolution(const Device& device)
     : device_(device), downsample_(device), upsample_(device), interpolate_(device), gatherList_(device) {}
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
+#include <utility>
 
 #include "stages/frame_params.hpp"
 #include "stages/pick_grid.hpp"
@@ -36,7 +36,7 @@ TemporalParams temporalParams(const Settings& settings, const FrameGeometry& fra
     TemporalParams p{};
     p.previousRays = frame.previousRays;
     p.hasHistory = settings.accumulates && frame.hasHistory ? 1 : 0;
-    p.usesConfidence = settings.antiLag > 0.0f && frame.hasConfidence ? 1 : 0;
+    p.usesConfidence = p.hasHistory != 0 && settings.antiLag > 0.0f && frame.hasConfidence ? 1 : 0;
     p.maxFrames = float(settings.historyFrames);
     p.planeTolerance = kPlaneTolerance;
     p.minNormalCosine = kMinNormalCosine;
@@ -44,21 +44,8 @@ TemporalParams temporalParams(const Settings& settings, const FrameGeometry& fra
     return p;
 }
 
-// The taps of the product of two kernels, each given from its middle outwards.
-void setTaps(AtrousParams& p, const std::vector<double>& alongX, const std::vector<double>& alongY) {
-    p.radiusX = int(alongX.size()) - 1;
-    p.radiusY = int(alongY.size()) - 1;
-    AtrousTap* tap = p.taps;
-    for (int j = -p.radiusY; j <= p.radiusY; ++j)
-        for (int i = -p.radiusX; i <= p.radiusX; ++i) {
-            const double share = alongX[std::size_t(std::abs(i))] * alongY[std::size_t(std::abs(j))];
-            *tap++ = {float(share), 1.0f / float(std::max(i * i + j * j, 1))};
-        }
-}
-
 // The passes of all iterations in order: one each, or a row and a column.
 std::vector<AtrousParams> filterPasses(const Settings& settings, const FrameGeometry& frame) {
-    const std::vector<double> three = {1.0 / 2.0, 1.0 / 4.0}, five = {3.0 / 8.0, 1.0 / 4.0, 1.0 / 16.0};
     std::vector<AtrousParams> passes;
     for (int i = 0; i < settings.filterIterations; ++i) {
         AtrousParams p{};
@@ -68,18 +55,20 @@ std::vector<AtrousParams> filterPasses(const Settings& settings, const FrameGeom
         p.depthTolerance = settings.filterDepth;
         p.normalTolerance = settings.filterNormal;
         // Each iteration leaves less noise: a fourth of the variance, or so.
-        p.luminanceTolerance = std::ldexp(settings.filterLuminance, -i);
+        p.luminanceTolerance = keepsMoment(settings) ? std::ldexp(settings.filterLuminance, -i) : 0.0f;
         // A step is twice as wide as the one before: it must fade twice as fast, or it blurs what frames made clean.
         p.fadeFrames = std::max(std::ldexp(settings.filterFade, -i), 1.0f);
         p.footprintM = lengthOf(frame.cameraRays.originDx);
         p.footprintPerM = lengthOf(frame.cameraRays.rayDx);
-        const std::vector<double>& kernel = settings.filterKernel == FilterKernel::Square3x3 ? three : five;
+        const bool isSmall = settings.filterKernel == FilterKernel::Square3x3;
+        p.share0 = isSmall ? 1.0f / 2.0f : 3.0f / 8.0f;
+        p.share1 = 1.0f / 4.0f;
+        p.share2 = isSmall ? 0.0f : 1.0f / 16.0f;
+        p.radiusX = p.radiusY = isSmall ? 1 : 2;
         if (settings.filterKernel == FilterKernel::Separable) {
-            setTaps(p, kernel, {1.0});
+            p.radiusY = 0;
             passes.push_back(p);
-            setTaps(p, {1.0}, kernel);
-        } else {
-            setTaps(p, kernel, kernel);
+            std::swap(p.radiusX, p.radiusY);
         }
         passes.push_back(p);
     }
@@ -87,6 +76,11 @@ std::vector<AtrousParams> filterPasses(const Settings& settings, const FrameGeom
 }
 
 }  // namespace
+
+bool keepsMoment(const Settings& settings) {
+    return settings.filterLuminance > 0.0f && settings.filterIterations > 0 &&
+           settings.filterWeights == FilterWeights::Plane;
+}
 
 FrameParams makeParams(const Settings& settings, const FrameGeometry& full) {
     constexpr float kMiddleGrey = 0.18f;  // what photographers and displays take for the middle
@@ -103,7 +97,9 @@ FrameParams makeParams(const Settings& settings, const FrameGeometry& full) {
     p.pattern = settings.pattern;
     const int frameIndex = settings.animatesNoise ? frame.frameIndex : 0;
     const int mapSizePx = minifiedSizePx(frame.rsmSizePx, settings.rsmMinify);
-    p.pack = {frame.rsmSizePx, frame.lightCount, settings.rsmMinify, u32(frameIndex)};
+    // A full sum is the same in every frame, of a minified map too.
+    const u32 pickSeed = settings.estimator == Estimator::Sum ? 0u : u32(frameIndex);
+    p.pack = {frame.rsmSizePx, frame.lightCount, settings.rsmMinify, pickSeed};
     p.gather.cameraRays = frame.cameraRays;
     p.gather.rsmSizePx = mapSizePx;
     p.gather.mapScale = float(frame.rsmSizePx) / float(std::max(mapSizePx * settings.rsmMinify, 1));
@@ -129,8 +125,11 @@ FrameParams makeParams(const Settings& settings, const FrameGeometry& full) {
     p.denoises = settings.accumulates || settings.filterIterations > 0;
     p.temporal = temporalParams(settings, frame);
     p.checksHistory = settings.accumulates && settings.antiLag > 0.0f;
-    p.historyCheck.droppedAbove = settings.antiLag;
-    p.historyCheck.keptBelow = 0.5f * settings.antiLag;
+    // The check takes pixels for independent; a tile's mean is one for all of its pixels.
+    constexpr float kTilePixels = 16.0f;
+    p.historyCheck.droppedAbove = settings.antiLag * (p.averagesTile ? kTilePixels : 1.0f);
+    p.historyCheck.keptBelow = 0.5f * p.historyCheck.droppedAbove;
+    p.keepsMoment = keepsMoment(settings);
     p.filterPasses = filterPasses(settings, frame);
     p.feedbackPasses = settings.feedback * (settings.filterKernel == FilterKernel::Separable ? 2 : 1);
     p.directLight.cameraRays = full.cameraRays;

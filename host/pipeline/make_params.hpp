@@ -46,6 +46,7 @@ struct FrameParams {
     bool denoises = false;      ///< temporal runs: it also readies a single frame for the filter
     bool accumulates = false;   ///< and its output is kept for the next frame
     TemporalParams temporal{};  ///< hasMotion is the stage's own
+    bool keepsMoment = false;   ///< the filter is guided by luminance
     bool checksHistory = false;
     HistoryCheckParams historyCheck{};
     std::vector<AtrousParams> filterPasses;  ///< in order
@@ -54,6 +55,9 @@ struct FrameParams {
     ExposureParams exposure{};
     ToneMapParams toneMap{};
 };
+
+/// Do these settings guide the filter by luminance, and so need moments in history?
+bool keepsMoment(const Settings& settings);
 
 FrameParams makeParams(const Settings& settings, const FrameGeometry& frame);
 

@@ -190,7 +190,7 @@ void Pipeline::run(const Settings& settings, const std::function<void(double)>& 
     const ViewRays rays = makeViewRays(p.frame.camera, p.extent);
     p.params = makeParams(
         settings, {rays, p.extent, p.inputs.rsm.sizePx, p.inputs.rsm.lightCount, p.inputs.shadowExtent, p.frameIndex,
-                   p.previousRays, p.indirect.hasHistory(p.extent, settings.divisor), p.indirect.hasConfidence()});
+                   p.previousRays, p.indirect.hasHistory(p.extent, settings), p.indirect.hasConfidence()});
     p.previousRays = rays;
 
     p.directLight.enqueue(

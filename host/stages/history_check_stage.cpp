@@ -3,19 +3,18 @@
 namespace earthshine {
 
 void HistoryCheckStage::enqueue(const Images& images, HistoryCheckParams params) {
-    requireExtent("history_check", "inAccumulated", images.accumulated, images.irradiance.extent());
-    const Extent count = tiles(images.irradiance.extent());
-    const auto columns = std::size_t(count.widthPx), rows = std::size_t(count.heightPx);
-    if (tiles_ != count) {
-        sums_ = device_.impl().makeBuffer(2 * sizeof(float) * columns * rows);
-        tiles_ = count;
+    const Extent extent = images.change.extent(), count = tiles(extent);
+    const auto columns = std::size_t(count.widthPx), rowsPx = std::size_t(extent.heightPx);
+    if (extent_ != extent) {
+        sums_ = device_.impl().makeBuffer(2 * sizeof(float) * columns * rowsPx);
+        extent_ = extent;
     }
-    check_.set("inIrradiance", images.irradiance).set("inAccumulated", images.accumulated).set("outSums", sums_);
-    check_.enqueueItems(columns, rows);
+    check_.set("inChange", images.change).set("outSums", sums_);
+    check_.enqueueItems(columns, rowsPx);
     params.columns = count.widthPx;
-    params.rows = count.heightPx;
+    params.heightPx = extent.heightPx;
     confidence_.set("inSums", sums_).set("outConfidence", images.outConfidence).setParams("params", params);
-    confidence_.enqueueItems(columns, rows);
+    confidence_.enqueueItems(columns, std::size_t(count.heightPx));
 }
 
 }  // namespace earthshine

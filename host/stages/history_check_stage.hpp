@@ -7,17 +7,16 @@
 
 namespace earthshine {
 
-/// Writes one confidence a tile. Thread-compatible; owns its programs and the tiles' sums, no images.
+/// Writes one confidence a tile. Thread-compatible; owns its programs and the sums, no images.
 class HistoryCheckStage {
 public:
     struct Images {
-        const Surface& irradiance;   ///< this frame's estimate
-        const Surface& accumulated;  ///< temporal's output
+        const Surface& change;  ///< temporal's
         const cl::Buffer& outConfidence;
     };
     explicit HistoryCheckStage(const Device& device)
         : device_(device), check_(device, "history_check"), confidence_(device, "history_confidence") {}
-    /// `params.columns` and `rows` are set from `images`.
+    /// `params.columns` and `heightPx` are set from `images`.
     void enqueue(const Images& images, HistoryCheckParams params);
 
     /// Tiles in x and y of a picture.
@@ -29,7 +28,7 @@ public:
 private:
     Device device_;
     Kernel check_, confidence_;
-    Extent tiles_;
+    Extent extent_;
     cl::Buffer sums_;
 };
 

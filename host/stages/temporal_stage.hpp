@@ -10,7 +10,7 @@ namespace earthshine {
 struct HistorySurfaces {
     Surface irradiance;  ///< lx, three numbers a pixel
     Surface length;      ///< frames
-    Surface moment;      ///< lx^2: mean squared luminance of the samples
+    Surface moment;      ///< lx^2: mean squared luminance of the samples; empty if nobody asks
 };
 
 /// Blends an estimate of irradiance into reprojected history. Thread-compatible; owns its program, no images.
@@ -27,10 +27,11 @@ public:
         const cl::Buffer& confidence;  ///< HistoryCheckStage's
         const Surface& outIrradiance;
         const Surface& outLength;
-        const Surface& outMoment;
+        const Surface& outMoment;  ///< may be empty: then moments are neither read nor written
+        const Surface& outChange;
     };
     explicit TemporalStage(const Device& device) : kernel_(device, "temporal") {}
-    /// `params.hasMotion` is set from `images`.
+    /// `params.hasMotion` and `keepsMoment` are set from `images`.
     void enqueue(const Images& images, TemporalParams params);
 
 private:

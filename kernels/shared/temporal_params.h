@@ -18,7 +18,7 @@ typedef struct TemporalParams {
     f32 planeTolerance;     // > 0, of the distance: how far off the surface's plane a tap may lie
     f32 minNormalCosine;    // [-1; 1]: between the surface's normal then and now
     f32 fireflyFactor;      // 0 = off, else >= 1: times the brightest neighbour
-    i32 padding0;
+    i32 keepsMoment;        // 0 or 1: are moments asked for?
 } TemporalParams;
 ES_ASSERT_SIZE(TemporalParams, 128);
 

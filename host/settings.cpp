@@ -53,8 +53,8 @@ void validate(const Settings& settings) {
         throw UsageError(fmt::format("firefly: {} would darken what is like its neighbours; 0 or at least 1",
                                      settings.fireflyFactor));
     if (settings.antiLag > 0.0f && settings.antiLag < 2.0f)
-        throw UsageError(fmt::format("anti-lag: {} would drop history for noise's sake; 0 or at least 2",
-                                     settings.antiLag));
+        throw UsageError(
+            fmt::format("anti-lag: {} would drop history for noise's sake; 0 or at least 2", settings.antiLag));
     if (settings.divisor == 3) throw UsageError("divisor: 3 is not 1, 2 or 4");
     if (settings.divisor > 1 && settings.upsampling == Upsampling::Interpolate && settings.estimator == Estimator::Sum)
         throw UsageError("upsampling: interpolate gathers the rest from a disk; use it with --estimator disk");

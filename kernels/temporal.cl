@@ -116,63 +116,6 @@ static vfloat confidenceAt(__global const float* confidence, SurfaceLayout layou
     return upper + v * (lower - upper);
 }
 
-// Adds the side x side pixels from (left, top) on that saw the same surface: bilinear weights for 2, for 3 what is
-// nearer more. Where a work-item's pixels move alike, as nearly all do, they are rows, not to be gathered one by one.
-static void addTaps(History* h, SURFACE_IN(prevNormalWs), SURFACE_IN(prevDepth), SURFACE_IN(historyIrradiance),
-                    SURFACE_IN(historyLength), SURFACE_IN(historyMoment), const TemporalParams* params,
-                    const SeenPlane* plane, vmask isWanted, vint left, vint top, int side, float looseness) {
-    int width = prevDepthLayout.widthPx, height = prevDepthLayout.heightPx;
-    int rowX = firstLane(left), rowY = firstLane(top);
-    bool isRow = !anyLane(isWanted & ((left - laneIndex() != rowX) | (top != rowY)));
-    for (int tap = 0; tap < side * side; ++tap) {
-        int i = tap % side, j = tap / side;
-        vint x = left + i, y = top + j;
-        vmask isInside = isWanted & (x >= 0) & (x < width) & (y >= 0) & (y < height);
-        if (!anyLane(isInside)) continue;
-        vfloat depth, length, moment = 0.0f;
-        vfloat3 normal, irradiance;
-        if (isRow) {
-            depth = loadFrom1(prevDepth, rowX + i, rowY + j);
-            normal = loadFrom3(prevNormalWs, rowX + i, rowY + j);
-            irradiance = loadFrom3(historyIrradiance, rowX + i, rowY + j);
-            length = loadFrom1(historyLength, rowX + i, rowY + j);
-            if (params->keepsMoment) moment = loadFrom1(historyMoment, rowX + i, rowY + j);
-        } else {
-            vint inX = clampInt(x, 0, width - 1), inY = clampInt(y, 0, height - 1);
-            depth = gather1(prevDepth, inX, inY);
-            normal = gather3(prevNormalWs, inX, inY);
-            irradiance = gather3(historyIrradiance, inX, inY);
-            length = gather1(historyLength, inX, inY);
-            if (params->keepsMoment) moment = gather1(historyMoment, inX, inY);
-        }
-        vfloat dx = toVfloat(x) - plane->x, dy = toVfloat(y) - plane->y;
-        vfloat weight = side == 2 ? (1.0f - fabs(dx)) * (1.0f - fabs(dy)) : 1.0f / (1.0f + dx * dx + dy * dy);
-        vmask isSame = isInside & isSameSurface(plane, params, looseness, dx, dy, depth, normal);
-        weight = vselect(isSame, weight, 0.0f);
-        h->weight += weight;
-        h->irradiance = mad3(weight, irradiance, h->irradiance);
-        h->length = vmad(weight, length, h->length);
-        h->moment = vmad(weight, moment, h->moment);
-    }
-}
-
-// Linear between the centres of tiles. A work-item's lanes lie in one column of tiles.
-static vfloat confidenceAt(__global const float* confidence, Pixel px, SurfaceLayout layout) {
-    int columns = (layout.widthPx + CONFIDENCE_TILE_PX - 1) / CONFIDENCE_TILE_PX;
-    int rows = (layout.heightPx + CONFIDENCE_TILE_PX - 1) / CONFIDENCE_TILE_PX;
-    int i = px.x / CONFIDENCE_TILE_PX, j = px.y / CONFIDENCE_TILE_PX;
-    float v = ((float)(px.y % CONFIDENCE_TILE_PX) + 0.5f) / CONFIDENCE_TILE_PX - 0.5f;
-    int otherRow = clamp(v < 0.0f ? j - 1 : j + 1, 0, rows - 1);
-    float c[3];
-    for (int k = 0; k < 3; ++k) {
-        int column = clamp(i + k - 1, 0, columns - 1);
-        float here = confidence[j * columns + column];
-        c[k] = here + fabs(v) * (confidence[otherRow * columns + column] - here);
-    }
-    vfloat u = (toVfloat(px.x % CONFIDENCE_TILE_PX + laneIndex()) + 0.5f) / CONFIDENCE_TILE_PX - 0.5f;
-    return c[1] + max(u, 0.0f) * (c[2] - c[1]) + max(-u, 0.0f) * (c[0] - c[1]);
-}
-
 // The brightest of the eight pixels around.
 #define NEIGHBOUR_LUMINANCE(NAME, PX) neighbourLuminance(NAME, NAME##Layout, PX)
 static vfloat neighbourLuminance(SURFACE_IN(inIrradiance), Pixel px) {

@@ -25,7 +25,8 @@ void TemporalStage::enqueue(const Images& images, TemporalParams params) {
     kernel_.set("inMotion", images.motion ? *images.motion : images.normalWs);
     kernel_.set("prevNormalWs", images.prevNormalWs).set("prevDepth", images.prevDepth);
     kernel_.set("historyIrradiance", images.history.irradiance).set("historyLength", images.history.length);
-    kernel_.set("historyMoment", params.keepsMoment ? images.history.moment : images.history.length).set("confidence", images.confidence);
+    kernel_.set("historyMoment", params.keepsMoment ? images.history.moment : images.history.length)
+        .set("confidence", images.confidence);
     kernel_.set("outIrradiance", images.outIrradiance).set("outLength", images.outLength);
     kernel_.set("outMoment", params.keepsMoment ? images.outMoment : images.outLength);
     kernel_.set("outChange", images.outChange).setParams("params", params);

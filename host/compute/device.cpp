@@ -218,7 +218,12 @@ const Tuning& Device::tuning() const noexcept {
     return impl_->tuning;
 }
 
+std::size_t Device::allocatedBytes() const noexcept {
+    return impl_->allocatedBytes;
+}
+
 cl::Buffer Device::Impl::makeBuffer(std::size_t bytes, cl_mem_flags flags) {
+    allocatedBytes += bytes;
     return checked(fmt::format("a buffer of {} bytes", bytes),
                    [&] { return cl::Buffer(context, flags, std::max<std::size_t>(bytes, 16)); });
 }

@@ -25,6 +25,7 @@ struct Device::Impl {
     cl::Context context;
     cl::CommandQueue queue;  ///< in order; the only one
     std::vector<Launch> launches;
+    std::size_t allocatedBytes = 0;  ///< Device::allocatedBytes
 
     /// Runs `body`; what OpenCL refuses becomes a DeviceError that starts with `what` and names this device.
     template <class Body>

@@ -15,6 +15,8 @@ class Kernel {
 public:
     /// Builds kernels/NAME.cl and takes its kernel NAME. Throws BuildError with the compiler's log.
     Kernel(const Device& device, std::string name);
+    /// The same from a text that is not among the library's kernels; what it includes is.
+    Kernel(const Device& device, std::string name, const std::string& text);
 
     /// Sets the argument that the kernel's source calls `argument`; a surface also sets its layout.
     /// Throws DeviceError if there is no such argument or the driver refuses the value.
@@ -32,6 +34,7 @@ public:
     void enqueueItems(std::size_t x, std::size_t y);
 
 private:
+    void build(const std::string& source);
     void setRaw(std::string_view argument, std::size_t size, const void* value);
     void setMemory(std::string_view argument, const cl::Memory& memory);
 

@@ -47,6 +47,7 @@ Surface::Surface(const Device& device, PixelFormat format, Extent extent) : form
                                std::size_t(extent.heightPx));
         });
     }
+    impl.allocatedBytes += sizeBytes_;
 }
 
 void requireExtent(const char* stage, const char* name, const Surface& surface, Extent extent) {

@@ -1,5 +1,5 @@
 // atrous: one pass of the edge-avoiding a-trous filter: a mean over taps that lie on the same surface.
-//   out(p) = sum_q k_q w(p, q) in(q) / sum_q k_q w(p, q),   q = p + stepPx (i, j), |i| <= radiusX, |j| <= radiusY
+//   out(p) = sum_q k_q w(p, q) in(q) / sum_q k_q w(p, q),   q = p + stepPx (i, j) of each tap
 //   Dammertz et al. 2010. 5 x 5 and 3 x 3 are B-splines; the separable pair runs a row and a column one after the other.
 //   w = fade max(0, 1 - t)^2,   t = (plane / reach)^2 + |n_p - n_q|^2 / normalTolerance + luminance (below)
 //   plane: distance of q's point from p's plane; reach: depthTolerance times the way to q on the surface, so that neither
@@ -27,11 +27,21 @@
 #define SMALLEST_FADE 0.1f
 #define YOUNG_FRAMES 8.0f
 
+// Item i's row. Rows that are a multiple of `step` apart follow one another, so that a column's taps are the rows that
+// its neighbours in time read too, and stay in a cache however far they lie apart (at step 16: half the time on a CPU).
+static int rowOf(int i, int height, int step) {
+    int rows = height / step, longer = height % step;  // of each remainder; the first `longer` have a row more
+    int split = longer * (rows + 1);
+    if (i < split) return i / (rows + 1) + i % (rows + 1) * step;
+    return longer + (i - split) / rows + (i - split) % rows * step;
+}
+
 __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), SURFACE_IN(inLength),
                      SURFACE_IN(inMoment), SURFACE_OUT(outIrradiance), const AtrousParams params) {
     Pixel px = itemPixel();
     if (isOutside(px, outIrradianceLayout)) return;
     int width = outIrradianceLayout.widthPx, height = outIrradianceLayout.heightPx;
+    if (params.radiusY > 0 && params.stepPx > 1) px.y = rowOf(px.y, height, params.stepPx);
     vfloat depth = load1(inDepth, px);
     vmask isSurface = depth > 0.0f;
     if (!anyLane(isSurface)) {
@@ -39,8 +49,8 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
         return;
     }
     vfloat3 irradiance = load3(inIrradiance, px);
-    vfloat length = load1(inLength, px);
-    vfloat fade = min(params.fadeFrames / max(length, 1.0f), 1.0f);
+    vfloat length = load1(inLength, px), inverseLength = 1.0f / max(length, 1.0f);
+    vfloat fade = min(params.fadeFrames * inverseLength, 1.0f);
     fade = vselect(fade < SMALLEST_FADE, 0.0f, fade);
     if (!anyLane(isSurface & (fade > 0.0f))) {
         store3(outIrradiance, px, irradiance);  // 0 on sky already
@@ -48,62 +58,75 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
     }
     vfloat3 normal = load3(inNormalWs, px);
 
-    // q's distance from p's plane is n.(x_q - x_p); with x = origin + depth ray, both linear in the pixel, it comes down
-    // to these dot products.
+    // The distance of q's point from p's plane is n.(x_q - x_p); with x = origin + depth ray, both linear in the pixel, it
+    // is depth_q slope + offset, both linear in the tap (i, j). Here in units of the reach one step away.
     const ViewRays* rays = &params.cameraRays;
-    vfloat originX = dot3(normal, splat3(rays->originDx)), originY = dot3(normal, splat3(rays->originDy));
-    vfloat rayX = dot3(normal, splat3(rays->rayDx)), rayY = dot3(normal, splat3(rays->rayDy));
-    vfloat3 ray = mad3(toVfloat(px.x + laneIndex()), splat3(rays->rayDx),
-                       mad3((vfloat)((float)px.y), splat3(rays->rayDy), splat3(rays->ray)));
+    vfloat3 ray = mad3(toVfloat(px.x + laneIndex()), splat3(rays->rayDx), splat3(rays->ray + (float)px.y * rays->rayDy));
     vfloat along = dot3(normal, ray);
-    vfloat cosine = max(-along * rsqrt(dot3(ray, ray)), 0.25f);
-
     vfloat reach = params.depthTolerance * vmad(depth, params.footprintPerM, params.footprintM);
-    reach *= max(YOUNG_FRAMES / max(length, 1.0f), 1.0f);
+    reach *= max(YOUNG_FRAMES * inverseLength, 1.0f);
     vfloat inverseReach = 1.0f / max(reach, 1e-30f);
+    vfloat slope = along * inverseReach * (1.0f / (float)params.stepPx), offset = -depth * slope;
+    vfloat slopeX = 0.0f, slopeY = 0.0f, offsetX = 0.0f, offsetY = 0.0f;
+    if (params.radiusX > 0) {
+        slopeX = inverseReach * dot3(normal, splat3(rays->rayDx));
+        offsetX = inverseReach * dot3(normal, splat3(rays->originDx));
+        slope -= (float)params.radiusX * slopeX;
+        offset -= (float)params.radiusX * offsetX;
+    }
+    if (params.radiusY > 0) {
+        slopeY = inverseReach * dot3(normal, splat3(rays->rayDy));
+        offsetY = inverseReach * dot3(normal, splat3(rays->originDy));
+        slope -= (float)params.radiusY * slopeY;
+        offset -= (float)params.radiusY * offsetY;
+    }
+
     float inverseNormal = 1.0f / params.normalTolerance;
     vfloat l = luminance(irradiance), inverseVariance = 0.0f;
     if (params.luminanceTolerance > 0.0f) {
-        vfloat variance = max(load1(inMoment, px) - l * l, 0.0f) / max(length, 1.0f);
+        vfloat variance = max(load1(inMoment, px) - l * l, 0.0f) * inverseLength;
         vfloat range = params.luminanceTolerance * params.luminanceTolerance * variance;
         inverseVariance = min(max(length - 3.0f, 0.0f), 1.0f) / (range + 1e-4f * l * l + 1e-30f);
     }
+    vfloat cosine = 1.0f;
+    if (params.weights == ATROUS_WEIGHTS_DEPTH) cosine = max(-along * rsqrt(dot3(ray, ray)), 0.25f);
 
-    float centre = (params.radiusX > 0 ? params.kernel0 : 1.0f) * (params.radiusY > 0 ? params.kernel0 : 1.0f);
-    vfloat sumWeights = centre;
-    vfloat3 sum = scale3(sumWeights, irradiance);
-    for (int j = -params.radiusY; j <= params.radiusY; ++j) {
-        int dy = j * params.stepPx, y = px.y + dy;
-        if (y < 0 || y >= height) continue;
-        float kernelY = params.radiusY == 0 ? 1.0f : j == 0 ? params.kernel0 : abs(j) == 1 ? params.kernel1 : params.kernel2;
-        for (int i = -params.radiusX; i <= params.radiusX; ++i) {
-            int dx = i * params.stepPx, x = px.x + dx;
-            if ((i == 0 && j == 0) || x + LANES <= 0 || x >= width) continue;
-            float kernelX =
-                params.radiusX == 0 ? 1.0f : i == 0 ? params.kernel0 : abs(i) == 1 ? params.kernel1 : params.kernel2;
+    int spanPx = params.radiusX * params.stepPx;
+    bool isInner = px.x >= spanPx && px.x + LANES + spanPx <= width;
+    vfloat sumWeights = 0.0f;
+    vfloat3 sum = make3(0.0f, 0.0f, 0.0f);
+    int t = 0;
+    for (int j = -params.radiusY; j <= params.radiusY; ++j, slope += slopeY, offset += offsetY) {
+        int y = px.y + j * params.stepPx;
+        vfloat slopeI = slope, offsetI = offset;
+        for (int i = -params.radiusX; i <= params.radiusX; ++i, ++t, slopeI += slopeX, offsetI += offsetX) {
+            int x = px.x + i * params.stepPx;
+            if ((i == 0 && j == 0) || y < 0 || y >= height || x + LANES <= 0 || x >= width) continue;
+            const AtrousTap at = params.taps[t];
             vfloat tapDepth = loadFrom1(inDepth, x, y);
-            vfloat3 tapNormal = loadFrom3(inNormalWs, x, y);
             vfloat3 tap = loadFrom3(inIrradiance, x, y);
-            vmask isThere = (x + laneIndex() >= 0) & (x + laneIndex() < width) & (tapDepth > 0.0f);
-            vfloat3 turn = sub3(tapNormal, normal);
+            vfloat3 turn = sub3(loadFrom3(inNormalWs, x, y), normal);
+            vfloat turned = dot3(turn, turn) * inverseNormal;
+            vmask isThere = tapDepth > 0.0f;
+            if (!isInner) isThere &= (x + laneIndex() >= 0) & (x + laneIndex() < width);
             vfloat weight;
             if (params.weights == ATROUS_WEIGHTS_PLANE) {
-                vfloat plane = vmad(tapDepth, vmad((float)dx, rayX, vmad((float)dy, rayY, along)), -depth * along);
-                plane = vmad((float)dx, originX, vmad((float)dy, originY, plane)) * inverseReach;
-                float inverseWay2 = 1.0f / (float)(dx * dx + dy * dy);
-                vfloat t = vmad(plane * plane, inverseWay2, dot3(turn, turn) * inverseNormal);
+                vfloat plane = vmad(tapDepth, slopeI, offsetI);
                 vfloat dl = luminance(tap) - l;
-                t = vmad(dl * dl, inverseVariance, t);
-                weight = max(1.0f - t, 0.0f);
-                weight *= weight;
+                vfloat near = vmad(plane * plane, -at.inverseWay2, 1.0f - turned);  // 1 - t
+                near = max(vmad(-dl * dl, inverseVariance, near), 0.0f);
+                weight = near * near;
             } else {
-                float inverseWay = rsqrt((float)(i * i + j * j)) / params.depthTolerance;
-                weight = es_exp(-fabs(tapDepth - depth) * cosine * inverseWay - dot3(turn, turn) * inverseNormal);
+                float inverseWay = sqrt(at.inverseWay2) / params.depthTolerance;
+                weight = es_exp(-fabs(tapDepth - depth) * cosine * inverseWay - turned);
             }
-            weight = vselect(isThere, kernelX * kernelY * fade * weight, 0.0f);
+            weight = vselect(isThere, at.share * weight, 0.0f);
             sumWeights += weight;
             sum = mad3(weight, tap, sum);
         }
     }
+    float centre = params.taps[(2 * params.radiusX + 1) * (2 * params.radiusY + 1) / 2].share;
+    sumWeights = vmad(fade, sumWeights, centre);
+    sum = mad3(fade, sum, scale3(centre, irradiance));
     store3(outIrradiance, px, select3(isSurface, scale3(1.0f / sumWeights, sum), make3(0.0f, 0.0f, 0.0f)));
 }

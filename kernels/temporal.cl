@@ -29,21 +29,74 @@ typedef struct History {
     vfloat length, moment;
 } History;
 
-static void addTap(History* h, vfloat weight, vfloat3 irradiance, vfloat length, vfloat moment) {
-    h->weight += weight;
-    h->irradiance = mad3(weight, irradiance, h->irradiance);
-    h->length = vmad(weight, length, h->length);
-    h->moment = vmad(weight, moment, h->moment);
+// The plane through a point as it was in the previous frame, as that frame's pixels see it. With x = origin + depth ray,
+// linear in the pixel, a point that pixel (x, y) saw lies slope depth + offset off it, linear in the pixel too.
+typedef struct SeenPlane {
+    vfloat x, y, depth;  // px, px, m: where the plane's point was
+    vfloat3 normal;
+    vfloat slope, slopeX, slopeY, offsetX, offsetY;
+} SeenPlane;
+
+static SeenPlane seenPlane(const ViewRays* rays, vfloat x, vfloat y, vfloat depth, vfloat3 normal) {
+    SeenPlane p = {x, y, depth, normal, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+    p.slopeX = dot3(normal, splat3(rays->rayDx));
+    p.slopeY = dot3(normal, splat3(rays->rayDy));
+    p.slope = vmad(x, p.slopeX, vmad(y, p.slopeY, dot3(normal, splat3(rays->ray))));
+    p.offsetX = dot3(normal, splat3(rays->originDx));
+    p.offsetY = dot3(normal, splat3(rays->originDy));
+    return p;
 }
 
-// Did pixel (x, y) of the previous frame see the plane through `point`?
-static vmask isSameSurface(const TemporalParams* params, float looseness, vint x, vint y, vfloat depth, vfloat3 normal,
-                           vfloat3 point, vfloat pointDepth, vfloat3 pointNormal) {
-    vfloat3 d = sub3(positionFromDepth(&params->previousRays, x, y, depth), point);
-    vfloat tolerance = looseness * params->planeTolerance * pointDepth;
-    vmask isThere = depth > 0.0f, isOnPlane = fabs(dot3(pointNormal, d)) <= tolerance;
-    vmask isTurned = dot3(pointNormal, normal) < params->minNormalCosine;
+// Did the pixel that is (dx, dy) away from the point see it?
+static vmask isSameSurface(const SeenPlane* p, const TemporalParams* params, float looseness, vfloat dx, vfloat dy,
+                           vfloat depth, vfloat3 normal) {
+    vfloat distance = (depth - p->depth) * p->slope;
+    distance = vmad(dx, vmad(depth, p->slopeX, p->offsetX), distance);
+    distance = vmad(dy, vmad(depth, p->slopeY, p->offsetY), distance);
+    vfloat tolerance = looseness * params->planeTolerance * p->depth;
+    vmask isThere = depth > 0.0f, isOnPlane = fabs(distance) <= tolerance;
+    vmask isTurned = dot3(p->normal, normal) < params->minNormalCosine;
     return vselectInt(isTurned, 0, isThere & isOnPlane);
+}
+
+// Adds the side x side pixels from (left, top) on that saw the same surface: bilinear weights for 2, for 3 what is
+// nearer more. Where a work-item's pixels move alike, as nearly all do, they are rows, not to be gathered one by one.
+static void addTaps(History* h, SURFACE_IN(prevNormalWs), SURFACE_IN(prevDepth), SURFACE_IN(historyIrradiance),
+                    SURFACE_IN(historyLength), SURFACE_IN(historyMoment), const TemporalParams* params,
+                    const SeenPlane* plane, vmask isWanted, vint left, vint top, int side, float looseness) {
+    int width = prevDepthLayout.widthPx, height = prevDepthLayout.heightPx;
+    int rowX = firstLane(left), rowY = firstLane(top);
+    bool isRow = !anyLane(isWanted & ((left - laneIndex() != rowX) | (top != rowY)));
+    for (int tap = 0; tap < side * side; ++tap) {
+        int i = tap % side, j = tap / side;
+        vint x = left + i, y = top + j;
+        vmask isInside = isWanted & (x >= 0) & (x < width) & (y >= 0) & (y < height);
+        if (!anyLane(isInside)) continue;
+        vfloat depth, length, moment;
+        vfloat3 normal, irradiance;
+        if (isRow) {
+            depth = loadFrom1(prevDepth, rowX + i, rowY + j);
+            normal = loadFrom3(prevNormalWs, rowX + i, rowY + j);
+            irradiance = loadFrom3(historyIrradiance, rowX + i, rowY + j);
+            length = loadFrom1(historyLength, rowX + i, rowY + j);
+            moment = loadFrom1(historyMoment, rowX + i, rowY + j);
+        } else {
+            vint inX = min(max(x, 0), width - 1), inY = min(max(y, 0), height - 1);
+            depth = gather1(prevDepth, inX, inY);
+            normal = gather3(prevNormalWs, inX, inY);
+            irradiance = gather3(historyIrradiance, inX, inY);
+            length = gather1(historyLength, inX, inY);
+            moment = gather1(historyMoment, inX, inY);
+        }
+        vfloat dx = toVfloat(x) - plane->x, dy = toVfloat(y) - plane->y;
+        vfloat weight = side == 2 ? (1.0f - fabs(dx)) * (1.0f - fabs(dy)) : 1.0f / (1.0f + dx * dx + dy * dy);
+        vmask isSame = isInside & isSameSurface(plane, params, looseness, dx, dy, depth, normal);
+        weight = vselect(isSame, weight, 0.0f);
+        h->weight += weight;
+        h->irradiance = mad3(weight, irradiance, h->irradiance);
+        h->length = vmad(weight, length, h->length);
+        h->moment = vmad(weight, moment, h->moment);
+    }
 }
 
 // Linear between the centres of tiles. A work-item's lanes lie in one column of tiles.
@@ -80,6 +133,10 @@ static vfloat neighbourLuminance(SURFACE_IN(inIrradiance), Pixel px) {
     return brightest;
 }
 
+#define HISTORY_ARGS                                                                                              \
+    SURFACE_ARG(prevNormalWs), SURFACE_ARG(prevDepth), SURFACE_ARG(historyIrradiance), SURFACE_ARG(historyLength), \
+        SURFACE_ARG(historyMoment)
+
 __kernel void temporal(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), SURFACE_IN(inMotion),
                        SURFACE_IN(prevNormalWs), SURFACE_IN(prevDepth), SURFACE_IN(historyIrradiance),
                        SURFACE_IN(historyLength), SURFACE_IN(historyMoment), __global const float* restrict confidence,
@@ -108,55 +165,30 @@ __kernel void temporal(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE
         if (params.hasMotion) motion = load3(inMotion, px);
         // What moves by less than this stays: a picture at rest is not resampled for rounding's sake.
         vmask moves = isSurface & (max(fabs(motion.x), fabs(motion.y)) > 1.0f / 256.0f);
-        vint x = px.x + laneIndex(), y = (vint)(px.y);
+        vfloat fx = toVfloat(px.x + laneIndex()), fy = (vfloat)((float)px.y);
+        vfloat depthThen = max(depth + motion.z, 0.0f);
         if (!anyLane(moves)) {
-            vfloat depthThen = depth + motion.z;
-            vfloat3 point = positionFromDepth(&params.previousRays, x, y, depthThen);
-            vfloat tapDepth = load1(prevDepth, px);
-            vmask isSame = isSameSurface(&params, 1.0f, x, y, tapDepth, load3(prevNormalWs, px), point, depthThen, normalWs);
-            addTap(&h, vselect(isSame, 1.0f, 0.0f), load3(historyIrradiance, px), load1(historyLength, px),
-                   load1(historyMoment, px));
+            SeenPlane plane = seenPlane(&params.previousRays, fx, fy, depthThen, normalWs);
+            vmask isSame = isSameSurface(&plane, &params, 1.0f, 0.0f, 0.0f, load1(prevDepth, px), load3(prevNormalWs, px));
+            h.weight = vselect(isSame, 1.0f, 0.0f);
+            h.irradiance = load3(historyIrradiance, px);
+            h.length = load1(historyLength, px);
+            h.moment = load1(historyMoment, px);
         } else {
-            vfloat fx = toVfloat(x) + motion.x, fy = toVfloat(y) + motion.y;
             // Beyond this the taps are outside anyway; 32-bit integers must hold them.
-            fx = min(max(fx, -8.0f), (float)width + 8.0f);
-            fy = min(max(fy, -8.0f), (float)height + 8.0f);
-            vfloat depthThen = max(depth + motion.z, 0.0f);
-            vfloat3 point = positionFromDepthAt(&params.previousRays, fx, fy, depthThen);
-            vfloat x0 = floor(fx), y0 = floor(fy);
-            vfloat u = fx - x0, v = fy - y0;
-            for (int tap = 0; tap < 4; ++tap) {
-                int i = tap & 1, j = tap >> 1;
-                vint tx = toVint(x0) + i, ty = toVint(y0) + j;
-                vmask isInside = (tx >= 0) & (tx < width) & (ty >= 0) & (ty < height);
-                tx = min(max(tx, 0), width - 1);
-                ty = min(max(ty, 0), height - 1);
-                vmask isSame = isInside & isSameSurface(&params, 1.0f, tx, ty, gather1(prevDepth, tx, ty),
-                                                        gather3(prevNormalWs, tx, ty), point, depthThen, normalWs);
-                vfloat weight = (i ? u : 1.0f - u) * (j ? v : 1.0f - v);
-                addTap(&h, vselect(isSame, weight, 0.0f), gather3(historyIrradiance, tx, ty),
-                       gather1(historyLength, tx, ty), gather1(historyMoment, tx, ty));
-            }
+            fx = min(max(fx + motion.x, -8.0f), (float)width + 8.0f);
+            fy = min(max(fy + motion.y, -8.0f), (float)height + 8.0f);
+            SeenPlane plane = seenPlane(&params.previousRays, fx, fy, depthThen, normalWs);
+            addTaps(&h, HISTORY_ARGS, &params, &plane, isSurface, toVint(floor(fx)), toVint(floor(fy)), 2, 1.0f);
             vmask isLost = isSurface & (h.weight < 0.01f);
             if (anyLane(isLost)) {
-                History r = {0.0f, zero3, 0.0f, 0.0f};
-                vint nearestX = toVint(floor(fx + 0.5f)), nearestY = toVint(floor(fy + 0.5f));
-                for (int tap = 0; tap < 9; ++tap) {
-                    vint tx = nearestX + (tap % 3 - 1), ty = nearestY + (tap / 3 - 1);
-                    vmask isInside = (tx >= 0) & (tx < width) & (ty >= 0) & (ty < height);
-                    tx = min(max(tx, 0), width - 1);
-                    ty = min(max(ty, 0), height - 1);
-                    vmask isSame = isInside & isSameSurface(&params, 2.0f, tx, ty, gather1(prevDepth, tx, ty),
-                                                            gather3(prevNormalWs, tx, ty), point, depthThen, normalWs);
-                    vfloat dx = toVfloat(tx) - fx, dy = toVfloat(ty) - fy;
-                    vfloat weight = 1.0f / (1.0f + dx * dx + dy * dy);
-                    addTap(&r, vselect(isSame, weight, 0.0f), gather3(historyIrradiance, tx, ty),
-                           gather1(historyLength, tx, ty), gather1(historyMoment, tx, ty));
-                }
-                h.weight = vselect(isLost, r.weight, h.weight);
-                h.irradiance = select3(isLost, r.irradiance, h.irradiance);
-                h.length = vselect(isLost, r.length, h.length);
-                h.moment = vselect(isLost, r.moment, h.moment);
+                History rescued = {0.0f, zero3, 0.0f, 0.0f};
+                addTaps(&rescued, HISTORY_ARGS, &params, &plane, isLost, toVint(floor(fx + 0.5f)) - 1,
+                        toVint(floor(fy + 0.5f)) - 1, 3, 2.0f);
+                h.weight = vselect(isLost, rescued.weight, h.weight);
+                h.irradiance = select3(isLost, rescued.irradiance, h.irradiance);
+                h.length = vselect(isLost, rescued.length, h.length);
+                h.moment = vselect(isLost, rescued.moment, h.moment);
             }
         }
     }

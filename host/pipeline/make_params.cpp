@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 
 #include "stages/frame_params.hpp"
@@ -43,8 +44,21 @@ TemporalParams temporalParams(const Settings& settings, const FrameGeometry& fra
     return p;
 }
 
+// The taps of the product of two kernels, each given from its middle outwards.
+void setTaps(AtrousParams& p, const std::vector<double>& alongX, const std::vector<double>& alongY) {
+    p.radiusX = int(alongX.size()) - 1;
+    p.radiusY = int(alongY.size()) - 1;
+    AtrousTap* tap = p.taps;
+    for (int j = -p.radiusY; j <= p.radiusY; ++j)
+        for (int i = -p.radiusX; i <= p.radiusX; ++i) {
+            const double share = alongX[std::size_t(std::abs(i))] * alongY[std::size_t(std::abs(j))];
+            *tap++ = {float(share), 1.0f / float(std::max(i * i + j * j, 1))};
+        }
+}
+
 // The passes of all iterations in order: one each, or a row and a column.
 std::vector<AtrousParams> filterPasses(const Settings& settings, const FrameGeometry& frame) {
+    const std::vector<double> three = {1.0 / 2.0, 1.0 / 4.0}, five = {3.0 / 8.0, 1.0 / 4.0, 1.0 / 16.0};
     std::vector<AtrousParams> passes;
     for (int i = 0; i < settings.filterIterations; ++i) {
         AtrousParams p{};
@@ -59,25 +73,14 @@ std::vector<AtrousParams> filterPasses(const Settings& settings, const FrameGeom
         p.fadeFrames = std::max(std::ldexp(settings.filterFade, -i), 1.0f);
         p.footprintM = lengthOf(frame.cameraRays.originDx);
         p.footprintPerM = lengthOf(frame.cameraRays.rayDx);
-        if (settings.filterKernel == FilterKernel::Square3x3) {
-            p.kernel0 = 1.0f / 2.0f;
-            p.kernel1 = 1.0f / 4.0f;
-            p.radiusX = p.radiusY = 1;
+        const std::vector<double>& kernel = settings.filterKernel == FilterKernel::Square3x3 ? three : five;
+        if (settings.filterKernel == FilterKernel::Separable) {
+            setTaps(p, kernel, {1.0});
             passes.push_back(p);
-            continue;
+            setTaps(p, {1.0}, kernel);
+        } else {
+            setTaps(p, kernel, kernel);
         }
-        p.kernel0 = 3.0f / 8.0f;
-        p.kernel1 = 1.0f / 4.0f;
-        p.kernel2 = 1.0f / 16.0f;
-        p.radiusX = p.radiusY = 2;
-        if (settings.filterKernel == FilterKernel::Square5x5) {
-            passes.push_back(p);
-            continue;
-        }
-        p.radiusY = 0;
-        passes.push_back(p);
-        p.radiusX = 0;
-        p.radiusY = 2;
         passes.push_back(p);
     }
     return passes;

@@ -12,14 +12,16 @@ namespace earthshine::bench {
 
 namespace {
 
-// A pixel: fade; four dot products of its plane, its ray, how far that runs along the normal, its cosine (rsqrt, two *,
-// max); the reach and what few frames make of it, 1 / reach; luminance; the centre's share, the mean.
+// A pixel: 1 / length and fade; its ray, how far that runs along the normal; the reach, what few frames make of it, 1 /
+// reach; slope and offset of its plane at no tap; luminance; the weights' sum, the mean.
 constexpr double kPixel =
-    3 + 4 * kDot3 + 2 * kMad3 + kDot3 + (kDot3 + 4) + (kFma + 1) + 4 + 2 + kLuminance + kScale3 + 1 + kScale3;
-// A tap: how its normal turned; distance from the plane; t of that, of the turn, and of luminance; (1 - t)^2; its
-// share; sums.
+    4 + kMad3 + kDot3 + (kFma + 1) + 3 + 2 + (2 + 1) + kLuminance + kFma + kScale3 + kMad3 + 1 + kScale3;
+// A direction that it has taps in: slope and offset a step, and at the first tap.
+constexpr double kDirection = 2 * (kDot3 + 1) + 2 * 2;
+// A tap: its slope and offset; how its normal turned; distance from the plane; the difference in luminance; 1 - t of
+// all three; its square; its share; sums.
 constexpr double kTap =
-    kSub3 + (5 * kFma + 1) + (1 + kFma + kDot3 + 1) + (kLuminance + 1 + 1 + kFma) + 3 + 2 + 1 + kMad3;
+    2 + kSub3 + (kDot3 + 1) + kFma + (kLuminance + 1) + (1 + 1 + kFma) + (1 + kFma + 1) + 1 + 1 + 1 + kMad3;
 
 // bytes: depth and out at every pixel; irradiance, normals and length where there is no sky.
 Row atrous(const Variant& variant, Extent extent, FilterKernel kernel, std::size_t pass) {
@@ -29,6 +31,7 @@ Row atrous(const Variant& variant, Extent extent, FilterKernel kernel, std::size
     settings.filterKernel = kernel;
     const AtrousParams params = room.params(settings, true).filterPasses.at(pass);
     const int taps = (2 * params.radiusX + 1) * (2 * params.radiusY + 1) - 1;
+    const int directions = (params.radiusX > 0) + (params.radiusY > 0);
     const auto stage = std::make_shared<AtrousStage>(room.device);
     return {.device = room.device,
             .run = launches(room.device,
@@ -37,7 +40,7 @@ Row atrous(const Variant& variant, Extent extent, FilterKernel kernel, std::size
                                 stage->enqueue({in, i.normalWs, i.depth, length, moment, out}, params);
                             }),
             .work = {.bytes = room.bytes({room.inputs.depth, out}, {in, room.inputs.normalWs, length}),
-                     .flops = (kPixel + taps * kTap) * room.seenPixels}};
+                     .flops = (kPixel + directions * kDirection + taps * kTap) * room.seenPixels}};
 }
 
 }  // namespace

@@ -31,13 +31,7 @@ Row byDriver(Extent extent) {
     const std::size_t bytes = 12 * std::size_t(extent.widthPx) * std::size_t(extent.heightPx);
     const cl::Buffer from = device.impl().makeBuffer(bytes), to = device.impl().makeBuffer(bytes);
     return {.device = device,
-            .run = launches(device,
-                            [=] {
-                                Device::Impl& impl = device.impl();
-                                cl::Event event;
-                                impl.queue.enqueueCopyBuffer(from, to, 0, 0, bytes, nullptr, &event);
-                                impl.launches.push_back({"copy", event});
-                            }),
+            .run = launches(device, [=] { enqueueCopy(device, from, to, bytes); }),
             .work = {.bytes = 2.0 * double(bytes)}};
 }
 

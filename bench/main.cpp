@@ -12,7 +12,7 @@
 
 #include "benches.hpp"
 #include "compare.hpp"
-#include "compute/cl.hpp"
+#include "compute/device_impl.hpp"
 #include "compute/tuning.hpp"
 #include "earthshine/error.hpp"
 #include "reporter.hpp"
@@ -100,6 +100,7 @@ void addContext(const RunOptions& run) {
     benchmark::AddCustomContext("lanes", std::to_string(tuning.lanes));
     benchmark::AddCustomContext("storage", storageName(tuning.storage));
     benchmark::AddCustomContext("local_size", fmt::format("{}x{}", tuning.localSizePx[0], tuning.localSizePx[1]));
+    benchmark::AddCustomContext("timer", device.impl().timesByClock ? "host clock" : "profiling events");
     benchmark::AddCustomContext("revision", kRevision);
     benchmark::AddCustomContext("copy_GB/s", fmt::format("{:.2f}", run.roof->copyGBs()));
     benchmark::AddCustomContext("copy_GB/s_by_kernel", fmt::format("{:.2f}", run.roof->kernelCopyGBs));

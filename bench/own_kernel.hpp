@@ -14,5 +14,8 @@ namespace bench {
 /// Builds bench/kernels/NAME.cl.
 Kernel ownKernel(const Device& device, const std::string& name);
 
+/// The driver's clEnqueueCopyBuffer, as a launch that is timed like a kernel's.
+void enqueueCopy(const Device& device, const cl::Buffer& from, const cl::Buffer& to, std::size_t bytes);
+
 }  // namespace bench
 }  // namespace earthshine

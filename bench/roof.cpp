@@ -50,12 +50,7 @@ double bufferCopyGBs(const Device& device, Extent extent) {
     const std::size_t bytes = 16 * std::size_t(extent.widthPx) * std::size_t(extent.heightPx);
     const cl::Buffer from = impl.makeBuffer(bytes), to = impl.makeBuffer(bytes);
     impl.checked("filling a buffer", [&] { return impl.queue.enqueueFillBuffer(from, 0.0f, 0, bytes); });
-    const auto run = launches(device, [&] {
-        cl::Event event;
-        impl.checked("copying a buffer",
-                     [&] { return impl.queue.enqueueCopyBuffer(from, to, 0, 0, bytes, nullptr, &event); });
-        impl.launches.push_back({"copy", event});
-    });
+    const auto run = launches(device, [&] { enqueueCopy(device, from, to, bytes); });
     return 2e-9 * double(bytes) / bestSeconds(run, kSeconds);
 }
 

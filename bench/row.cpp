@@ -112,12 +112,10 @@ std::function<std::vector<StageTime>()> launches(const Device& device, std::func
         std::vector<StageTime> times;
         for (const Launch& launch : impl.launches) {
             if (!only.empty() && launch.kernel != only) continue;
-            const double ms = 1e-6 * double(launch.event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
-                                            launch.event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
             auto same =
                 std::find_if(times.begin(), times.end(), [&](const StageTime& t) { return t.stage == launch.kernel; });
             if (same == times.end()) same = times.insert(times.end(), {launch.kernel, 0.0});
-            same->ms += ms;
+            same->ms += launch.ms();
         }
         return times;
     };

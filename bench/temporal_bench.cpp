@@ -13,15 +13,17 @@ namespace earthshine::bench {
 
 namespace {
 
-// Is a tap the same surface: its place, its distance from the plane against a tolerance, the cosine. And what it adds.
-constexpr double kTap = kPositionFromDepth + kSub3 + 1 + kDot3 + kDot3;
+// The plane as it was seen: slope and offset, each a step along x and y. Is a tap on it: its distance at the point,
+// then a step along x and y, against a tolerance; the cosine. And what it adds.
+constexpr double kSeenPlane = 4 * kDot3 + (kDot3 + 2 * kFma), kTap = 2 + 4 * kFma + 1 + kDot3;
 constexpr double kAddTap = 1 + kMad3 + 2 * kFma;
 // 1 / weight, history by it, the confidence (place in a tile, two slopes) times it, the new length and share,
 // luminance, moment and blend.
 constexpr double kBlend = 2 + 3 + 1 + (3 + 6 + 1) + 2 + 1 + kLuminance + (3 + kFma) + kSub3 + kMad3 + 1;
-constexpr double kStill = 1 + kPositionFromDepth + kTap + kAddTap + kBlend;
-// Where it was, kept in range; depth then; the bilinear weights' parts; four taps, each with its weight.
-constexpr double kMoving = 2 + 4 + 2 + kPositionFromDepth + 4 + 4 * (kTap + 3 + kAddTap) + kBlend;
+// Depth then; the plane; a tap, of weight 1.
+constexpr double kStill = 2 + kSeenPlane + kTap + kBlend;
+// The same; where it was, kept in range; four taps, each with its place and bilinear weight.
+constexpr double kMoving = 2 + kSeenPlane + 6 + 2 + 4 * (2 + kTap + 3 + kAddTap) + kBlend;
 
 // bytes: depth and three outputs at every pixel; the estimate, normals, motion, the previous frame's normals and depths
 // and history where there is no sky. Taps that moving pixels share count once; none is lost, none is rescued.

@@ -22,17 +22,12 @@ std::string buildOptions(const DeviceCaps& caps, const Tuning& tuning) {
 
 }  // namespace
 
-Kernel::Kernel(const Device& device, std::string name) : device_(device), name_(std::move(name)) {
-    build(expandKernel(name_ + ".cl", device_.impl().options.kernelFolder));
-}
-
 Kernel::Kernel(const Device& device, std::string name, const std::string& text)
     : device_(device), name_(std::move(name)) {
-    build(expandKernelText(name_ + ".cl", text, device_.impl().options.kernelFolder));
-}
-
-void Kernel::build(const std::string& source) {
     Device::Impl& impl = device_.impl();
+    const std::string& folder = impl.options.kernelFolder;
+    const std::string source =
+        text.empty() ? expandKernel(name_ + ".cl", folder) : expandKernelText(name_ + ".cl", text, folder);
     arguments_ = argumentNames(source, name_, impl.tuning.rsmRecords);
     impl.checked(name_ + ": building", [&] {
         const cl::Program program = buildProgram(impl.context, impl.device, name_, source,

@@ -40,8 +40,8 @@ TEST(BenchRows, AFewRun) {
     ASSERT_EQ(result.exitCode, 0) << result.err;
     std::ifstream in(file);
     const nlohmann::json json = nlohmann::json::parse(in);
-    for (const char* key :
-         {"device", "platform", "driver", "lanes", "storage", "local_size", "revision", "copy_GB/s", "fma_GFLOP/s"})
+    for (const char* key : {"device", "platform", "driver", "lanes", "storage", "local_size", "timer", "revision",
+                            "copy_GB/s", "fma_GFLOP/s"})
         EXPECT_NE(json["context"].value(key, ""), "") << key;
     ASSERT_EQ(json["benchmarks"].size(), 6u);
     for (const auto& row : json["benchmarks"]) {

@@ -11,12 +11,6 @@ namespace earthshine::bench {
 
 namespace {
 
-// "" where the spread holds 1: no more than noise. One repetition has no spread to tell noise by.
-const char* verdict(const RowRatio& row) {
-    if (row.repetitionsA < 3 || row.repetitionsB < 3) return "";
-    return row.high < 1.0 ? "  faster" : row.low > 1.0 ? "  slower" : "";
-}
-
 std::string onlyIn(const std::string& path, const ResultFile& file, const ResultFile& other) {
     const auto count = std::count_if(file.rows.begin(), file.rows.end(),
                                      [&](const auto& row) { return !other.rows.contains(row.first); });
@@ -64,9 +58,9 @@ std::string compareFiles(const std::string& pathA, const std::string& pathB, boo
     table += fmt::format("{:<{}}{:>12}{:>12}{:>9}   {:<18}{}\n", "", width, "A ms", "B ms", "B/A", "quartiles of B/A",
                          "repetitions");
     for (const RowRatio& row : rows)
-        table += fmt::format("{:<{}}{:>12.4f}{:>12.4f}{:>9.3f}   {:<18}{} and {}{}\n", row.name, width, row.msA,
-                             row.msB, row.ratio, fmt::format("{:.3f} to {:.3f}", row.low, row.high), row.repetitionsA,
-                             row.repetitionsB, verdict(row));
+        table += fmt::format("{:<{}}{:>12.4f}{:>12.4f}{:>9.3f}   {:<18}{} and {}\n", row.name, width, row.msA, row.msB,
+                             row.ratio, fmt::format("{:.3f} to {:.3f}", row.low, row.high), row.repetitionsA,
+                             row.repetitionsB);
     return table + onlyIn(pathA, a, b) + onlyIn(pathB, b, a);
 }
 

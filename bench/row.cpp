@@ -65,7 +65,7 @@ void measure(benchmark::State& state, Row& row) {
     if (row.work.bytes > 0.0) {
         const Roof& roof = *runOptions().roof;
         state.counters["GB/s"] = 1e-9 * row.work.bytes / seconds;
-        state.counters["GFLOP/s"] = 1e-9 * row.work.flops / seconds;
+        if (row.work.flops > 0.0) state.counters["GFLOP/s"] = 1e-9 * row.work.flops / seconds;
         const double least = std::max(row.work.bytes / (1e9 * roof.copyGBs()), row.work.flops / (1e9 * roof.fmaGflops));
         state.counters["roofline"] = least / seconds;
     }

@@ -54,9 +54,8 @@ TEST(BenchCompare, PrintsATable) {
     const test::Result result = compareProgram({kBefore, kAfter});
     EXPECT_EQ(result.exitCode, 0) << result.err;
     EXPECT_THAT(result.out, HasSubstr("revision v1"));
-    EXPECT_THAT(result.out, testing::ContainsRegex("atrous.*4\\.0000.*2\\.0000.*0\\.500.*0\\.476 to 0\\.525.*faster"));
-    // A spread around 1 is noise, and one repetition tells nothing.
-    EXPECT_THAT(result.out, testing::ContainsRegex("modulate[^\n]*3 and 3\n"));
+    EXPECT_THAT(result.out,
+                testing::ContainsRegex("atrous.*4\\.0000.*2\\.0000.*0\\.500.*0\\.476 to 0\\.525.*3 and 3\n"));
     EXPECT_THAT(result.out, testing::ContainsRegex("temporal[^\n]*1 and 1\n"));
     EXPECT_THAT(result.out, HasSubstr("1 row only in " + kBefore));
     EXPECT_THAT(result.out, HasSubstr("1 row only in " + kAfter));
@@ -73,12 +72,12 @@ TEST(BenchCompare, RefusesWhatIsNoResult) {
     expectRefusal(compareProgram({kCutOff, kBefore}), 1, "cut_off.json: is not JSON: wrong or cut off at byte 701");
 }
 
-/// before.json with a change.
+/// after.json with a change.
 class BenchCompareChanged : public testing::Test {
 protected:
     template <class Change>
     std::string changed(Change&& change) {
-        std::ifstream in(kBefore);
+        std::ifstream in(kAfter);  // which holds no NaN, unlike before.json
         nlohmann::json json = nlohmann::json::parse(in);
         change(json);
         const std::string path = (folder.path() / "changed.json").string();

@@ -59,8 +59,19 @@ TEST(BenchRows, AFewRun) {
             EXPECT_GT(row.value("roofline", 0.0), 0.0) << name;
         }
     }
-    // What a run writes, --compare reads.
-    EXPECT_EQ(runBench({"--compare", file, file}).exitCode, 0);
+}
+
+// Aggregates of repetitions are written as well, with NaN where Google Benchmark divides 0 by 0.
+TEST(BenchRows, WhatARunWritesCompareReads) {
+    const test::TempFolder folder;
+    const std::string file = (folder.path() / "copies.json").string();
+    const test::Result result =
+        runBench({"--variants=tuned", "--sizes=64x36", "--benchmark_min_time=0.0001", "--benchmark_repetitions=3",
+                  "--benchmark_filter=^copy", "--benchmark_out=" + file});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const test::Result compared = runBench({"--compare", file, file});
+    EXPECT_EQ(compared.exitCode, 0) << compared.err;
+    EXPECT_THAT(compared.out, testing::ContainsRegex("copy.64x36.kernel.tuned.* 1\\.000 .*3 and 3\n"));
 }
 
 TEST(BenchRows, WrongUsageIsOneLine) {

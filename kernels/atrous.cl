@@ -27,8 +27,8 @@
 #define SMALLEST_FADE 0.1f
 #define YOUNG_FRAMES 8.0f
 
-// Item i's row. Rows that are a multiple of `step` apart follow one another, so that a column's taps are the rows that
-// its neighbours in time read too, and stay in a cache however far they lie apart (at step 16: half the time on a CPU).
+// Item i's row, of planes: those that are a multiple of `step` apart follow one another, so that a column's taps are rows
+// that were just read, however far apart they lie (at step 4: 0.7 of the time on a CPU). Images keep blocks together.
 static int rowOf(int i, int height, int step) {
     int rows = height / step, longer = height % step;  // of each remainder; the first `longer` have a row more
     int split = longer * (rows + 1);
@@ -41,7 +41,7 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
     Pixel px = itemPixel();
     if (isOutside(px, outIrradianceLayout)) return;
     int width = outIrradianceLayout.widthPx, height = outIrradianceLayout.heightPx;
-    if (params.radiusY > 0 && params.stepPx > 1) px.y = rowOf(px.y, height, params.stepPx);
+    if (STORAGE_PLANAR && params.radiusY > 0 && params.stepPx > 1) px.y = rowOf(px.y, height, params.stepPx);
     vfloat depth = load1(inDepth, px);
     vmask isSurface = depth > 0.0f;
     if (!anyLane(isSurface)) {

@@ -60,13 +60,13 @@ __kernel void bilateral_upsample(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), SU
     vmask isLost = isSurface & (sum < MIN_WEIGHT);
     if (anyLane(isLost)) {
         vint nearX = vselectInt(taps.weightX[1] >= 0.5f, taps.x + 1, taps.x);
-        nearX = min(max(nearX, 0), lowDepthLayout.widthPx - 1);
+        nearX = clampInt(nearX, 0, lowDepthLayout.widthPx - 1);
         int nearY = taps.fractionY < 0.5f ? taps.y[0] : taps.y[1];
         vint bestX = nearX, bestY = (vint)(nearY);
         vfloat bestCost = 3.0f;  // more than any
         for (int i = 0; i < 9; ++i) {
             int j = i == 0 ? 4 : (int)((NEARER_FIRST >> (4 * (i - 1))) & 15u);
-            vint x = min(max(nearX + (j % 3 - 1), 0), lowDepthLayout.widthPx - 1);
+            vint x = clampInt(nearX + (j % 3 - 1), 0, lowDepthLayout.widthPx - 1);
             int y = min(max(nearY + (j / 3 - 1), 0), lowDepthLayout.heightPx - 1);
             TapMatch match = matchTap(&grid, &point, x, y, gather1(lowDepth, x, (vint)(y)),
                                       gather3(lowNormalWs, x, (vint)(y)));

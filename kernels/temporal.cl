@@ -81,7 +81,7 @@ static void addTaps(History* h, SURFACE_IN(prevNormalWs), SURFACE_IN(prevDepth),
             length = loadFrom1(historyLength, rowX + i, rowY + j);
             moment = loadFrom1(historyMoment, rowX + i, rowY + j);
         } else {
-            vint inX = min(max(x, 0), width - 1), inY = min(max(y, 0), height - 1);
+            vint inX = clampInt(x, 0, width - 1), inY = clampInt(y, 0, height - 1);
             depth = gather1(prevDepth, inX, inY);
             normal = gather3(prevNormalWs, inX, inY);
             irradiance = gather3(historyIrradiance, inX, inY);

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <memory>
 #include <optional>
 
 #include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "cli/camera_path.hpp"
@@ -244,6 +246,7 @@ void measureMotion(const MotionArguments& arguments) {
     for (const QualityScene& scene : list.scenes) {
         const MotionResult result = measureScene(scene, list, arguments, *context, device);
         fmt::print("{}", tableOf(result, arguments));
+        std::fflush(stdout);  // scenes take minutes
         json["scenes"].push_back(jsonOf(result));
     }
     std::ofstream stream(file, std::ios::binary);

@@ -187,6 +187,13 @@ TEST_P(SmallFrame, Runs) {
     if (GetParam().options.rsmRecords != 0)
         outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), Estimator::Disk, 2);
     for (int i = 0; i < 2; ++i) outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), denoising());
+    for (const int divisor : {2, 4})
+        for (const Upsampling upsampling : {Upsampling::Bilateral, Upsampling::Interpolate}) {
+            Settings lower = denoising();
+            lower.divisor = divisor;
+            lower.upsampling = upsampling;
+            outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), lower);
+        }
 }
 
 std::vector<reference::Variant> smallFrameVariants() {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
@@ -105,6 +106,14 @@ FrameImages makeRoomFrame(Extent extent, int rsmSizePx) {
     frame.shadowDepth = cast(sun.camera, {2 * rsmSizePx, 2 * rsmSizePx}, 1.0f).depth;
     frame.lights = {sun};
     return frame;
+}
+
+const FrameImages& roomFrame(Extent extent, int rsmSizePx) {
+    static std::map<std::array<int, 3>, FrameImages> frames;
+    const std::array<int, 3> key{extent.widthPx, extent.heightPx, rsmSizePx};
+    auto frame = frames.find(key);
+    if (frame == frames.end()) frame = frames.emplace(key, makeRoomFrame(extent, rsmSizePx)).first;
+    return frame->second;
 }
 
 }  // namespace earthshine::bench

@@ -9,4 +9,7 @@ namespace earthshine::bench {
 /// G-buffer of `extent`, one directional light with an RSM of rsmSizePx and a shadow map of twice that.
 FrameImages makeRoomFrame(Extent extent, int rsmSizePx);
 
+/// The same, kept for as long as the program runs: rows share it.
+const FrameImages& roomFrame(Extent extent, int rsmSizePx);
+
 }  // namespace earthshine::bench

@@ -1,15 +1,15 @@
-// rsm_gather: the disk estimator, tuned and naive. Where it gathers from records, packing them is part of its time.
+// rsm_gather: the disk estimator, whose cost a sample is what its number of samples, 4 to 64, shows; with and without
+// packing the records that it gathers from; and as all pixels gather the same pattern.
 
-#include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
 #include <memory>
 
-#include "bench.hpp"
-#include "interop/host_transport.hpp"
-#include "measure.hpp"
-#include "pipeline/make_params.hpp"
-#include "room_frame.hpp"
+#include "benches.hpp"
+#include "flops.hpp"
+#include "gather_flops.hpp"
+#include "room.hpp"
+#include "row.hpp"
 #include "stages/blue_noise.hpp"
 #include "stages/frame_params.hpp"
 #include "stages/rsm_gather_stage.hpp"
@@ -19,56 +19,55 @@ namespace earthshine::bench {
 
 namespace {
 
-constexpr int kRsmSizePx = 512;
+struct Setting {
+    int sampleCount;
+    Rotation rotation = Rotation::Noise;
+    bool packs = false;
+};
 
-void gather(benchmark::State& state, Extent extent, int sampleCount, const Variant& variant) {
-    Device device(chosenDevice(), variant.options);
-    Device::Impl& impl = device.impl();
-    const FrameImages images = makeRoomFrame(extent, kRsmSizePx);
-    const FrameInputs frame = images.inputs();
-    FrameSurfaces inputs;
-    HostTransport transport(device);
-    transport.enqueue(frame, inputs);
-    RsmPackStage packStage(device);
-
-    const Surface irradiance(device, PixelFormat::RGBA32F, extent);
-    const std::vector<f32x4> points = makeDiskPattern(sampleCount);
-    const cl::Buffer pattern = impl.makeBuffer(points.size() * sizeof(f32x4));
-    impl.queue.enqueueWriteBuffer(pattern, CL_TRUE, 0, points.size() * sizeof(f32x4), points.data());
-    const std::vector<float> planes = makeRotationNoise();
-    const cl::Buffer noise = impl.makeBuffer(planes.size() * sizeof(float));
-    impl.queue.enqueueWriteBuffer(noise, CL_TRUE, 0, planes.size() * sizeof(float), planes.data());
+// bytes: depth and out at every pixel, normals where there is no sky, of the map what samples
+// read, at most all of it once.
+Row gather(const Variant& variant, Extent extent, const Setting& setting) {
+    const Room room(variant, extent);
+    const Surface out = room.three();
     Settings settings;
-    settings.sampleCount = sampleCount;
+    settings.sampleCount = setting.sampleCount;
+    settings.rotation = setting.rotation;
     settings.radiusUv = 0.3f;  // a disk that stays on the map: every sample costs its full price
-    const FrameParams params =
-        makeParams(settings, {makeViewRays(frame.camera, extent), extent, kRsmSizePx, 1, inputs.shadowExtent, 0});
-
-    RsmGatherStage stage(device);
-    const RsmGatherStage::Images surfaces{inputs.normalWs, inputs.depth, inputs.rsm, inputs.lights,
-                                          pattern,         noise,        irradiance};
-    measure(state, device, [&] {
-        if (device.tuning().rsmRecords) packStage.enqueue(inputs.rsm, inputs.lights);
-        stage.enqueue(surfaces, params.gather);
-    });
-    const double samples = double(extent.widthPx) * extent.heightPx * sampleCount;
-    state.counters["Msamples/s"] = benchmark::Counter(1e-6 * samples, benchmark::Counter::kIsIterationInvariantRate);
+    const RsmGatherParams params = room.params(settings).gather;
+    const cl::Buffer pattern = room.device.impl().upload(makeDiskPattern(setting.sampleCount));
+    const cl::Buffer noise = room.device.impl().upload(makeRotationNoise());
+    const bool hasRecords = room.device.tuning().rsmRecords;
+    const auto packStage = std::make_shared<RsmPackStage>(room.device);
+    const auto stage = std::make_shared<RsmGatherStage>(room.device);
+    if (hasRecords) packStage->enqueue(room.inputs.rsm, room.inputs.lights);
+    Row row{.device = room.device,
+            .run = launches(room.device, [=] {
+                const FrameSurfaces& i = room.inputs;
+                if (setting.packs && hasRecords) packStage->enqueue(i.rsm, i.lights);
+                stage->enqueue({i.normalWs, i.depth, i.rsm, i.lights, pattern, noise, out}, params);
+            })};
+    row.pixels = room.pixels;
+    row.samples = setting.sampleCount;
+    if (!setting.packs)
+        row.work = {.bytes = room.bytes({room.inputs.depth, out}, {room.inputs.normalWs}) +
+                             room.rsmBytes(room.seenPixels * setting.sampleCount),
+                    .flops = gatherFlops(hasRecords, settings) * room.seenPixels};
+    return row;
 }
 
 }  // namespace
 
-void registerRsmGather() {
-    for (const Extent extent : {Extent{1280, 720}, Extent{1920, 1080}}) {
-        for (const Variant* variant : {&tuned(), &naive()}) {
-            const std::string name =
-                fmt::format("rsm_gather.{}x{}.8spp.{}", extent.widthPx, extent.heightPx, variant->name);
-            benchmark::RegisterBenchmark(name.c_str(),
-                                         [=](benchmark::State& state) { gather(state, extent, 8, *variant); })
-                ->UseManualTime()
-                ->Unit(benchmark::kMillisecond)
-                ->MinTime(0.5);
-        }
-    }
+void addRsmGatherRows() {
+    const auto add = [](const Extents& extents, const std::string& name, const Setting& setting) {
+        addRows("rsm_gather", extents, name,
+                [=](const Variant& variant, Extent extent) { return gather(variant, extent, setting); });
+    };
+    add(usualExtents(), "8spp", {8});
+    add(usualExtents(), "8spp_packing", {8, Rotation::Noise, true});
+    add(usualExtents(), "8spp_same_pattern", {8, Rotation::Off});
+    for (const int sampleCount : {4, 16, 32, 64})
+        add({{{1920, 1080}}}, fmt::format("{}spp", sampleCount), {sampleCount});
 }
 
 }  // namespace earthshine::bench

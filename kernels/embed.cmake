@@ -1,6 +1,11 @@
-# cmake -DOUT=... -DROOT=... -DFILES=a|b|c -P embed.cmake: writes each file's text into one C++ table.
+# cmake -DOUT=... -DROOT=... -DFILES=a|b|c [-DTABLE=... -DHEADER=...] -P embed.cmake: writes each file's text into one
+# C++ table, which HEADER declares.
+if(NOT TABLE)
+  set(TABLE kKernelTexts)
+  set(HEADER compute/kernel_source.hpp)
+endif()
 string(REPLACE "|" ";" FILES "${FILES}")
-set(TEXT "// Made by kernels/embed.cmake.\n#include \"compute/kernel_source.hpp\"\n\nnamespace earthshine {\n\nconst KernelText kKernelTexts[] = {\n")
+set(TEXT "// Made by kernels/embed.cmake.\n#include \"${HEADER}\"\n\nnamespace earthshine {\n\nconst KernelText ${TABLE}[] = {\n")
 foreach(FILE IN LISTS FILES)
   file(READ ${ROOT}/${FILE} CONTENT)
   get_filename_component(NAME ${FILE} NAME)

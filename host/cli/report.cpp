@@ -75,6 +75,7 @@ void addFrame(Json& report, const FrameReport& frame) {
     report["allStages"] = seriesJson("stage", "all", frame.timing.deviceTotal());
     report["steps"] = Json::array();
     for (const auto& [name, series] : frame.timing.steps()) report["steps"].push_back(seriesJson("step", name, series));
+    report["deviceMemoryBytes"] = frame.device.allocatedBytes();
     report["exposure"] = frame.exposure;
     report["gatheredPixels"] = frame.gatheredPixels;
     report["nonFinite"] = Json::object();

@@ -204,6 +204,7 @@ Device::Device(const DeviceCaps& caps, const DeviceOptions& options) : impl_(std
         impl_->context = cl::Context(impl_->device);
         impl_->queue = cl::CommandQueue(impl_->context, impl_->device,
                                         options.profiling ? cl::QueueProperties::Profiling : cl::QueueProperties::None);
+        impl_->timesByClock = options.profiling && tellsNoTimes(impl_->context, impl_->queue);
         return 0;
     });
     log(LogLevel::Debug,
@@ -218,7 +219,12 @@ const Tuning& Device::tuning() const noexcept {
     return impl_->tuning;
 }
 
+std::size_t Device::allocatedBytes() const noexcept {
+    return impl_->allocatedBytes;
+}
+
 cl::Buffer Device::Impl::makeBuffer(std::size_t bytes, cl_mem_flags flags) {
+    allocatedBytes += bytes;
     return checked(fmt::format("a buffer of {} bytes", bytes),
                    [&] { return cl::Buffer(context, flags, std::max<std::size_t>(bytes, 16)); });
 }

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <utility>
 
 #include "compute/kernel_source.hpp"
 #include "compute/program_cache.hpp"
@@ -20,9 +22,12 @@ std::string buildOptions(const DeviceCaps& caps, const Tuning& tuning) {
 
 }  // namespace
 
-Kernel::Kernel(const Device& device, std::string name) : device_(device), name_(std::move(name)) {
+Kernel::Kernel(const Device& device, std::string name, const std::string& text)
+    : device_(device), name_(std::move(name)) {
     Device::Impl& impl = device_.impl();
-    const std::string source = expandKernel(name_ + ".cl", impl.options.kernelFolder);
+    const std::string& folder = impl.options.kernelFolder;
+    const std::string source =
+        text.empty() ? expandKernel(name_ + ".cl", folder) : expandKernelText(name_ + ".cl", text, folder);
     arguments_ = argumentNames(source, name_, impl.tuning.rsmRecords);
     impl.checked(name_ + ": building", [&] {
         const cl::Program program = buildProgram(impl.context, impl.device, name_, source,
@@ -72,9 +77,16 @@ void Kernel::enqueueItems(std::size_t x, std::size_t y) {
         const cl::NDRange local(localSize_[0], localSize_[1]);
         const auto roundUp = [](std::size_t n, std::size_t to) { return (n + to - 1) / to * to; };
         const cl::NDRange global(roundUp(x, localSize_[0]), roundUp(y, localSize_[1]));
-        cl::Event event;
-        impl.queue.enqueueNDRangeKernel(kernel_, cl::NullRange, global, local, nullptr, &event);
-        impl.launches.push_back({name_, event});
+        Launch launch{name_, {}};
+        if (impl.timesByClock) impl.queue.finish();
+        const auto start = std::chrono::steady_clock::now();
+        impl.queue.enqueueNDRangeKernel(kernel_, cl::NullRange, global, local, nullptr, &launch.event);
+        if (impl.timesByClock) {
+            impl.queue.finish();
+            launch.clockMs =
+                std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        }
+        impl.launches.push_back(std::move(launch));
         return 0;
     });
 }

@@ -13,8 +13,9 @@ namespace earthshine {
 /// One kernel built for a device's lanes, storage and records. Not thread-safe: arguments are its state.
 class Kernel {
 public:
-    /// Builds kernels/NAME.cl and takes its kernel NAME. Throws BuildError with the compiler's log.
-    Kernel(const Device& device, std::string name);
+    /// Builds kernels/NAME.cl and takes its kernel NAME; or builds `text`, which is not among the library's kernels,
+    /// but what it includes is. Throws BuildError with the compiler's log.
+    Kernel(const Device& device, std::string name, const std::string& text = {});
 
     /// Sets the argument that the kernel's source calls `argument`; a surface also sets its layout.
     /// Throws DeviceError if there is no such argument or the driver refuses the value.

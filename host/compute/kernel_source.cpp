@@ -28,10 +28,9 @@ std::string readText(const std::string& file, const std::string& folder, const s
                                  folder.empty() ? "in the library" : "under " + folder));
 }
 
-void expandInto(std::string& out, const std::string& file, const std::string& folder, std::set<std::string>& seen,
-                const std::string& includedFrom) {
-    if (!seen.insert(file).second) return;
-    std::istringstream lines(readText(file, folder, includedFrom));
+void expandInto(std::string& out, const std::string& file, const std::string& text, const std::string& folder,
+                std::set<std::string>& seen) {
+    std::istringstream lines(text);
     out += fmt::format("#line 1 \"{}\"\n", file);
     std::string line;
     for (int number = 1; std::getline(lines, line); ++number) {
@@ -39,8 +38,10 @@ void expandInto(std::string& out, const std::string& file, const std::string& fo
         if (line.starts_with(kInclude)) {
             const auto end = line.find('"', kInclude.size());
             if (end == std::string::npos) throw InputError(fmt::format("{}:{}: #include without an end", file, number));
-            expandInto(out, line.substr(kInclude.size(), end - kInclude.size()), folder, seen,
-                       fmt::format("{}:{}: ", file, number));
+            const std::string included = line.substr(kInclude.size(), end - kInclude.size());
+            if (seen.insert(included).second)
+                expandInto(out, included, readText(included, folder, fmt::format("{}:{}: ", file, number)), folder,
+                           seen);
             out += fmt::format("#line {} \"{}\"\n", number + 1, file);
         } else {
             out += line;
@@ -71,9 +72,13 @@ std::string lastIdentifier(std::string_view text) {
 }  // namespace
 
 std::string expandKernel(const std::string& file, const std::string& folder) {
+    return expandKernelText(file, readText(file, folder, ""), folder);
+}
+
+std::string expandKernelText(const std::string& file, const std::string& text, const std::string& folder) {
     std::string out;
-    std::set<std::string> seen;
-    expandInto(out, file, folder, seen, "");
+    std::set<std::string> seen{file};
+    expandInto(out, file, text, folder, seen);
     return out;
 }
 

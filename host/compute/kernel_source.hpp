@@ -19,6 +19,9 @@ extern const KernelText kKernelTexts[];
 /// empty. Throws InputError naming the include that cannot be found.
 std::string expandKernel(const std::string& file, const std::string& folder);
 
+/// The same for a text that is not among the library's, `file` being its name in messages; what it includes is.
+std::string expandKernelText(const std::string& file, const std::string& text, const std::string& folder);
+
 /// The argument names of kernel `name` in an expanded text, in order: one for a plain argument, name and nameLayout for
 /// a SURFACE_IN or SURFACE_OUT, what RSM_IN stands for with records or with images.
 std::vector<std::string> argumentNames(const std::string& expandedText, const std::string& name, bool rsmRecords);

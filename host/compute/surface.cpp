@@ -47,6 +47,7 @@ Surface::Surface(const Device& device, PixelFormat format, Extent extent) : form
                                std::size_t(extent.heightPx));
         });
     }
+    impl.allocatedBytes += sizeBytes_;
 }
 
 void ensure(const Device& device, Surface& surface, PixelFormat format, Extent extent) {

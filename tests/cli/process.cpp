@@ -16,10 +16,11 @@ extern char** environ;
 
 namespace earthshine::test {
 
-Process::Process(const Arguments& arguments, const std::vector<std::string>& environment) {
+Process::Process(const Arguments& arguments, const std::vector<std::string>& environment,
+                 const std::string& programPath) {
     out_ = ::memfd_create("stdout", MFD_CLOEXEC);
     err_ = ::memfd_create("stderr", MFD_CLOEXEC);
-    std::string program = EARTHSHINE_PROGRAM_PATH;
+    std::string program = programPath;
     std::vector<std::string> words{program};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv, env;
@@ -68,8 +69,9 @@ Result Process::wait() {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), read(out_), read(err_)};
 }
 
-Result runEarthshine(const Arguments& arguments, const std::vector<std::string>& environment) {
-    return Process(arguments, environment).wait();
+Result runEarthshine(const Arguments& arguments, const std::vector<std::string>& environment,
+                     const std::string& program) {
+    return Process(arguments, environment, program).wait();
 }
 
 }  // namespace earthshine::test

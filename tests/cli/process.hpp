@@ -19,7 +19,8 @@ using Arguments = std::vector<std::string>;
 class Process {
 public:
     /// `environment` adds "NAME=value" to this process's own.
-    explicit Process(const Arguments& arguments, const std::vector<std::string>& environment = {});
+    explicit Process(const Arguments& arguments, const std::vector<std::string>& environment = {},
+                     const std::string& program = EARTHSHINE_PROGRAM_PATH);
     ~Process();  ///< kills it if it still runs
     Process(const Process&) = delete;
     Process& operator=(const Process&) = delete;
@@ -34,7 +35,8 @@ private:
     int out_ = -1, err_ = -1;
 };
 
-/// Runs `earthshine` with these arguments to its end.
-Result runEarthshine(const Arguments& arguments, const std::vector<std::string>& environment = {});
+/// Runs `earthshine`, or another program, with these arguments to its end.
+Result runEarthshine(const Arguments& arguments, const std::vector<std::string>& environment = {},
+                     const std::string& program = EARTHSHINE_PROGRAM_PATH);
 
 }  // namespace earthshine::test

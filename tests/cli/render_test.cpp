@@ -165,6 +165,7 @@ TEST_F(Render, TheReportHoldsEverySettingAsItWasGiven) {
     EXPECT_EQ(report["device"]["tuning"]["lanes"], 4);
     EXPECT_EQ(report["transport"], "host");
     EXPECT_NE(report["gl"]["renderer"], "");
+    EXPECT_GT(report["deviceMemoryBytes"], 64 * 36 * 100);  // a frame's surfaces have more than a hundred bytes a pixel
     EXPECT_EQ(report["frames"], 3);
     EXPECT_EQ(report["framesTimed"], 3);  // and one ahead of them
     EXPECT_EQ(report["sequence"]["warmup"], 1);

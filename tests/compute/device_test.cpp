@@ -9,6 +9,7 @@
 #include <cctype>
 #include <cstdlib>
 
+#include "compute/surface.hpp"
 #include "earthshine/error.hpp"
 #include "image/temp_folder.hpp"
 #include "reference/device_variants.hpp"
@@ -150,6 +151,22 @@ TEST_F(Devices, OptionsOutOfRangeAreRefused) {
     DeviceOptions images;
     images.storage = "image";
     EXPECT_THAT(thrown<UsageError>([&] { Device(withoutImages, images); }), HasSubstr("no images"));
+}
+
+TEST_F(Devices, CountsWhatIsAllocatedOnIt) {
+    for (const char* storage : {"image", "planar"}) {
+        DeviceOptions options;
+        options.storage = storage;
+        const Device device(selectDevice(""), options);
+        EXPECT_EQ(device.allocatedBytes(), 0u);
+        device.impl().makeBuffer(1000);
+        EXPECT_EQ(device.allocatedBytes(), 1000u);
+        // A plane of 7 x 3 has rows of 16 floats, between two guards.
+        const std::size_t surface =
+            storage == std::string("image") ? 16u * 7 * 3 : 4u * (3 * 16 * 3 + 2 * SURFACE_GUARD);
+        Surface(device, PixelFormat::RGBA32F, {7, 3});
+        EXPECT_EQ(device.allocatedBytes(), 1000u + surface) << storage;
+    }
 }
 
 TEST_F(Devices, OptionsTakeTheTuningTablesPlace) {

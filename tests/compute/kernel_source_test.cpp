@@ -68,6 +68,15 @@ TEST(KernelSource, LineMarksKeepFilesAndLines) {
               "#line 5 \"a.cl\"\nfive\n");
 }
 
+TEST(KernelSource, ATextOfAnotherIncludesTheLibrarys) {
+    const std::string text = expandKernelText("own.cl", "#include \"lanes.clh\"\ntwo\n", "");
+    EXPECT_TRUE(text.starts_with("#line 1 \"own.cl\"\n#line 1 \"lanes.clh\"\n"));
+    EXPECT_TRUE(text.ends_with("#line 2 \"own.cl\"\ntwo\n"));
+    EXPECT_EQ(countOf(text, "#define EARTHSHINE_LANES_CLH"), 1);
+    EXPECT_THAT(thrown<InputError>([] { expandKernelText("own.cl", "\n#include \"nowhere.clh\"\n", ""); }),
+                HasSubstr("own.cl:2: nowhere.clh"));
+}
+
 TEST(KernelSource, WhatIsMissingIsNamed) {
     const TempFolder folder;
     writeText(folder / "a.cl", "one\n\n#include \"nowhere.clh\"\n");

@@ -74,6 +74,10 @@ public:
     const DeviceCaps& caps() const noexcept;
     const Tuning& tuning() const noexcept;
 
+    /// Bytes of all surfaces and buffers made on it so far; what was given back since is not taken off. Pixels of the
+    /// host that are read in place, or on their way, do not count.
+    std::size_t allocatedBytes() const noexcept;
+
     struct Impl;
     Impl& impl() const noexcept { return *impl_; }
 

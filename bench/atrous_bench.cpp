@@ -1,0 +1,61 @@
+// atrous: passes of the filter, each with all its taps: history of one frame, which fades nothing (kernels/atrous.cl).
+
+#include <memory>
+
+#include "benches.hpp"
+#include "flops.hpp"
+#include "room.hpp"
+#include "row.hpp"
+#include "stages/atrous_stage.hpp"
+
+namespace earthshine::bench {
+
+namespace {
+
+// A pixel: 1 / length and fade; its ray, how far that runs along the normal; the reach, what few frames make of it, 1 /
+// reach; slope and offset of its plane at no tap; luminance; the weights' sum, the mean.
+constexpr double kPixel =
+    4 + kMad3 + kDot3 + (kFma + 1) + 3 + 2 + (2 + 1) + kLuminance + kFma + kScale3 + kMad3 + 1 + kScale3;
+// A direction that it has taps in: slope and offset a step, and at the first tap.
+constexpr double kDirection = 2 * (kDot3 + 1) + 2 * 2;
+// A tap: its slope and offset; how its normal turned; distance from the plane; the difference in luminance; 1 - t of
+// all three; its square; its share; sums.
+constexpr double kTap =
+    2 + kSub3 + (kDot3 + 1) + kFma + (kLuminance + 1) + (1 + 1 + kFma) + (1 + kFma + 1) + 1 + 1 + 1 + kMad3;
+
+// bytes: depth and out at every pixel; irradiance, normals and length where there is no sky.
+Row atrous(const Variant& variant, Extent extent, FilterKernel kernel, std::size_t pass) {
+    const Room room(variant, extent);
+    const Surface in = room.noisy(), out = room.three(), length = room.constant(1.0f), moment = room.constant(1e5f);
+    Settings settings = settingsOf(Preset::Balanced);
+    settings.filterKernel = kernel;
+    const AtrousParams params = room.params(settings, true).filterPasses.at(pass);
+    const int taps = (2 * params.radiusX + 1) * (2 * params.radiusY + 1) - 1;
+    const int directions = (params.radiusX > 0) + (params.radiusY > 0);
+    const auto stage = std::make_shared<AtrousStage>(room.device);
+    return {.device = room.device,
+            .run = launches(room.device,
+                            [=] {
+                                const FrameSurfaces& i = room.inputs;
+                                stage->enqueue({in, i.normalWs, i.depth, length, moment, out}, params);
+                            }),
+            .work = {.bytes = room.bytes({room.inputs.depth, out}, {in, room.inputs.normalWs, length}),
+                     .flops = (kPixel + directions * kDirection + taps * kTap) * room.seenPixels}};
+}
+
+}  // namespace
+
+void addAtrousRows() {
+    const auto add = [](const char* setting, FilterKernel kernel, std::size_t pass) {
+        addRows("atrous", usualExtents(), setting,
+                [=](const Variant& variant, Extent extent) { return atrous(variant, extent, kernel, pass); });
+    };
+    add("row_step1", FilterKernel::Separable, 0);
+    add("column_step1", FilterKernel::Separable, 1);
+    add("row_step4", FilterKernel::Separable, 4);
+    add("column_step4", FilterKernel::Separable, 5);
+    add("3x3_step1", FilterKernel::Square3x3, 0);
+    add("5x5_step1", FilterKernel::Square5x5, 0);
+}
+
+}  // namespace earthshine::bench

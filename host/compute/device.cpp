@@ -204,6 +204,7 @@ Device::Device(const DeviceCaps& caps, const DeviceOptions& options) : impl_(std
         impl_->context = cl::Context(impl_->device);
         impl_->queue = cl::CommandQueue(impl_->context, impl_->device,
                                         options.profiling ? cl::QueueProperties::Profiling : cl::QueueProperties::None);
+        impl_->timesByClock = options.profiling && tellsNoTimes(impl_->context, impl_->queue);
         return 0;
     });
     log(LogLevel::Debug,

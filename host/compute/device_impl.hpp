@@ -14,6 +14,14 @@ namespace earthshine {
 struct Launch {
     std::string kernel;
     cl::Event event;
+    double clockMs = 0.0;  ///< by the host's clock, where events tell no time (Device::Impl::timesByClock)
+
+    /// Time on the device; needs DeviceOptions::profiling, and the launch to be over.
+    double ms() const {
+        if (clockMs > 0.0) return clockMs;
+        return 1e-6 * double(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
+                             event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+    }
 };
 
 struct Device::Impl {
@@ -23,7 +31,8 @@ struct Device::Impl {
     std::string cacheFolder;  ///< of compiled programs; "" = none
     cl::Device device;
     cl::Context context;
-    cl::CommandQueue queue;  ///< in order; the only one
+    cl::CommandQueue queue;     ///< in order; the only one
+    bool timesByClock = false;  ///< profiling, but events tell no time: every launch is waited for and timed here
     std::vector<Launch> launches;
 
     /// Runs `body`; what OpenCL refuses becomes a DeviceError that starts with `what` and names this device.

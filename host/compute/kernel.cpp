@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <utility>
 
 #include "compute/kernel_source.hpp"
 #include "compute/program_cache.hpp"
@@ -72,9 +74,16 @@ void Kernel::enqueueItems(std::size_t x, std::size_t y) {
         const cl::NDRange local(localSize_[0], localSize_[1]);
         const auto roundUp = [](std::size_t n, std::size_t to) { return (n + to - 1) / to * to; };
         const cl::NDRange global(roundUp(x, localSize_[0]), roundUp(y, localSize_[1]));
-        cl::Event event;
-        impl.queue.enqueueNDRangeKernel(kernel_, cl::NullRange, global, local, nullptr, &event);
-        impl.launches.push_back({name_, event});
+        Launch launch{name_, {}};
+        if (impl.timesByClock) impl.queue.finish();
+        const auto start = std::chrono::steady_clock::now();
+        impl.queue.enqueueNDRangeKernel(kernel_, cl::NullRange, global, local, nullptr, &launch.event);
+        if (impl.timesByClock) {
+            impl.queue.finish();
+            launch.clockMs =
+                std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        }
+        impl.launches.push_back(std::move(launch));
         return 0;
     });
 }

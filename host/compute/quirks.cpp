@@ -18,4 +18,12 @@ std::string knownUnusable(const DeviceCaps& caps) {
     return {};
 }
 
+bool tellsNoTimes(const cl::Context& context, const cl::CommandQueue& queue) {
+    const cl::Buffer buffer(context, CL_MEM_READ_WRITE, 16);
+    cl::Event event;
+    queue.enqueueFillBuffer(buffer, 0.0f, 0, 16, nullptr, &event);
+    event.wait();
+    return event.getProfilingInfo<CL_PROFILING_COMMAND_QUEUED>() == 0;
+}
+
 }  // namespace earthshine

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "compute/cl.hpp"
 #include "earthshine/device.hpp"
 
 namespace earthshine {
@@ -16,5 +17,8 @@ std::string knownUnusable(const DeviceCaps& caps);
 
 /// fma() is many instructions although the device claims it: llvmpipe (Mesa 22.3) computes it in integers.
 bool emulatesFma(const DeviceCaps& caps);
+
+/// A profiling queue's events tell no times, only 0, 1, 2, 3: rusticl (Mesa 22.3).
+bool tellsNoTimes(const cl::Context& context, const cl::CommandQueue& queue);
 
 }  // namespace earthshine

@@ -1,4 +1,5 @@
 // earthshine_bench: times kernels by profiling events, tuned and naive in one run, and prints their ratio.
+//   earthshine_bench --tune ...: rows of the tuning table instead (tune.hpp)
 //   earthshine_bench [--device=NAME] [Google Benchmark's own options, such as --benchmark_filter=REGEX]
 
 #include <benchmark/benchmark.h>
@@ -14,6 +15,7 @@
 #include "compute/cl.hpp"
 #include "compute/tuning.hpp"
 #include "earthshine/error.hpp"
+#include "tune.hpp"
 
 namespace earthshine::bench {
 
@@ -88,6 +90,10 @@ const DeviceCaps& chosenDevice() {
 int main(int argc, char** argv) {
     using namespace earthshine;
     try {
+        if (bench::asksToTune(argc, argv)) {
+            bench::tune(argc, argv);
+            return 0;
+        }
         std::string device;
         std::vector<char*> rest;
         for (int i = 0; i < argc; ++i) {

@@ -305,8 +305,10 @@ private:
             measure(one, scenarios_.size(), 0);
         }
         add({});  // as the table has them, kernel by kernel
+        const Group common{table_.localSizePx[0], table_.localSizePx[1]};
         for (const Group group : kGroups)
-            if (std::size_t(group.x * group.y) <= caps_.maxWorkGroupSize) add(group);
+            if (std::size_t(group.x * group.y) <= caps_.maxWorkGroupSize && (group != common || !table_.groups.empty()))
+                add(group);
         for (int round = 0; round < arguments_.rounds; ++round) {
             for (Candidate& candidate : candidates) measure(candidate, scenarios_.size(), round);
             // Once more: what the same differs by. The better one is what has to be beaten.
@@ -381,7 +383,7 @@ private:
         for (const Candidate* candidate : sorted) {
             const bool isTables = candidate->group == Group{};
             const Group group = isTables ? Group{own[0], own[1]} : candidate->group;
-            fmt::print(" {}{}{} {:.3f}", isTables ? "*" : "", group == chosen && !isTables ? ">" : "", nameOf(group),
+            fmt::print(" {}{}{} {:.3f}", isTables ? "*" : "", group == chosen ? ">" : "", nameOf(group),
                        candidate->best(of));
         }
         fmt::print("; the table's twice a round: {:.1f} % apart\n", 100.0 * spreads_.at(kernel));

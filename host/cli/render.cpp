@@ -41,7 +41,7 @@ struct RenderArguments {
 void renderScene(const RenderArguments& arguments) {
     // From the start of the process to the first pixel: what each part took, in order.
     nlohmann::ordered_json start = {{"untilCommandMs", processMs()}};
-    const auto note = [&start, watch = Stopwatch()](const char* part) mutable {
+    auto note = [&start, watch = Stopwatch()](const char* part) mutable {
         start[part] = watch.ms();
         watch = Stopwatch();
     };

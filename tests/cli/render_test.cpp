@@ -167,6 +167,8 @@ TEST_F(Render, TheReportHoldsEverySettingAsItWasGiven) {
     EXPECT_NE(report["gl"]["renderer"], "");
     EXPECT_EQ(report["frames"], 3);
     EXPECT_EQ(report["framesTimed"], 3);  // and one ahead of them
+    EXPECT_GT(report["start"]["firstFrameMs"], 0.0);
+    EXPECT_GT(report["start"]["firstPixelMs"], report["start"]["firstFrameMs"]);
     EXPECT_EQ(report["sequence"]["warmup"], 1);
     EXPECT_EQ(report["outputs"], (std::vector<std::string>{path("a.png"), path("r.json")}));
     ASSERT_GT(report["stages"].size(), 3u);

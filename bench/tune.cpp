@@ -1,7 +1,8 @@
 // Lanes x storage first, with the groups of the table, for they decide most and every kernel shares surfaces; then, for
 // what won, the group of each kernel. What is measured is the pipeline itself, by its stage times, on frames that
 // between them launch every kernel but the full sum. Candidates take turns, round by round, since other programs come
-// and go; one replaces what the table says only if it wins by kMinGain in the median round and loses in none.
+// and go. One replaces what the table says only if it loses in no round and wins in the median one by kMinGain, and by
+// more than the table's own, measured twice a round, differs from itself.
 
 #include "tune.hpp"
 
@@ -156,6 +157,11 @@ double oddPixels(const Pictures& expected, const Pictures& actual) {
     return double(odd) / double(count);
 }
 
+double medianOf(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values[(values.size() - 1) / 2];
+}
+
 class Tuner {
 public:
     Tuner(const DeviceCaps& caps, const Arguments& arguments)
@@ -232,15 +238,15 @@ private:
             candidate.rejected = fmt::format("{:.3g} % of pixels differ from one lane's", 100.0 * odd);
     }
 
-    // Is `candidate` faster than `base`, round by round, beyond noise? The median of the ratios, or 0.
-    double gain(const Candidate& base, const Candidate& candidate, const auto& of) const {
+    // Is `candidate` faster than `base`, round by round, beyond what repeats of one differ by? The median ratio, or 0.
+    double gain(const Candidate& base, const Candidate& candidate, const auto& of, double spread = 0.0) const {
         if (!candidate.rejected.empty() || candidate.rounds.size() < base.rounds.size()) return 0.0;
         std::vector<double> ratios;
         for (std::size_t i = 0; i < base.rounds.size(); ++i)
             ratios.push_back(of(base.rounds[i]) / of(candidate.rounds[i]));
-        std::sort(ratios.begin(), ratios.end());
-        const double median = ratios[ratios.size() / 2];
-        return ratios.front() >= 1.0 && median >= kMinGain ? median : 0.0;
+        const double median = medianOf(ratios);
+        const double least = *std::min_element(ratios.begin(), ratios.end());
+        return least >= 1.0 && median >= std::max(kMinGain, 1.0 + spread) ? median : 0.0;
     }
 
     Candidate chooseWay() {
@@ -333,9 +339,10 @@ private:
             const std::array<int, 2> own = localSizeOf(table_, kernel);
             chosen[kernel] = {own[0], own[1]};
             double most = 0.0;
+            const double spread = medianOf(spreads_.at(kernel));
             if (entry.second >= kMinShare * all)
                 for (const Candidate& candidate : candidates)
-                    if (const double g = gain(base, candidate, of); g > most)
+                    if (const double g = gain(base, candidate, of, spread); g > most)
                         most = g, chosen[kernel] = candidate.group;
             printKernel(kernel, candidates, of, chosen[kernel], own);
         }
@@ -348,8 +355,7 @@ private:
     void takeBetter(Times& times, const Times& repeat) {
         for (auto& [kernel, ms] : times.kernels) {
             const double other = repeat.kernels.at(kernel);
-            double& spread = spreads_[kernel];
-            spread = std::max(spread, std::max(ms, other) / std::min(ms, other) - 1.0);
+            spreads_[kernel].push_back(std::max(ms, other) / std::min(ms, other) - 1.0);
             ms = std::min(ms, other);
         }
         times.frame = std::min(times.frame, repeat.frame);
@@ -386,7 +392,7 @@ private:
             fmt::print(" {}{}{} {:.3f}", isTables ? "*" : "", group == chosen ? ">" : "", nameOf(group),
                        candidate->best(of));
         }
-        fmt::print("; the table's twice a round: {:.1f} % apart\n", 100.0 * spreads_.at(kernel));
+        fmt::print("; the table's twice a round: {:.1f} % apart\n", 100.0 * medianOf(spreads_.at(kernel)));
     }
 
     // A row for all kernels with the group that most have, and one for each that has another.
@@ -426,7 +432,8 @@ private:
     std::vector<Scenario> scenarios_;
     Frames frames_;
     std::map<std::string, std::vector<std::optional<Pictures>>> expected_;  ///< a storage's, a scenario each
-    std::map<std::string, double> spreads_;  ///< most that a kernel differed by between two measurements of a round
+    /// Of a kernel: by how much the table's two times differ, a round each.
+    std::map<std::string, std::vector<double>> spreads_;
 };
 
 Arguments parse(int argc, char** argv) {

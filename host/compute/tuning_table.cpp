@@ -16,12 +16,14 @@
 namespace earthshine {
 
 // CPUs: vectors as wide as the registers, whole cache lines of planes, and groups as wide as a row of a picture: a
-// thread walks along rows, whose memory comes in ahead of it. llvmpipe vectorises across work-items by itself, and its
-// texture unit is its fast path. bench/README.md has the measurements.
+// thread walks along rows, whose memory comes in ahead of it; unpack reads rows of the host's memory, one at a time.
+// llvmpipe vectorises across work-items by itself, and its texture unit is its fast path. bench/README.md has the
+// measurements.
 const char kShippedTuning[] = R"(
 # scope    pattern                   kernel              lanes   storage  group
 device     llvmpipe                  *                   1       image    8x8
 type       CPU                       *                   native  planar   64x4
+type       CPU                       unpack              -       -        64x1
 default    *                         *                   1       image    16x8
 )";
 

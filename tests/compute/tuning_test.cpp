@@ -137,6 +137,16 @@ TEST(TuningTable, ShippedRowsHoldEveryDevice) {
     EXPECT_EQ(gpu.storage, Storage::Image);
     EXPECT_THAT(localSizeOf(gpu, "atrous"), ElementsAre(16, 8));
     EXPECT_EQ(gpu.reason, "shipped table, default: 1 pixel a work-item, images");
+    DeviceCaps cpu = fastGpu();
+    cpu.type = "CPU";
+    cpu.nativeFloatWidth = 8;
+    EXPECT_EQ(defaultTuning(cpu).lanes, 8);
+    EXPECT_EQ(defaultTuning(cpu).storage, Storage::Planar);
+    EXPECT_THAT(localSizeOf(defaultTuning(cpu), "atrous"), ElementsAre(64, 4));
+    EXPECT_THAT(localSizeOf(defaultTuning(cpu), "unpack"), ElementsAre(64, 1));
+    cpu.name = "llvmpipe (LLVM 15.0.6, 256 bits)";
+    EXPECT_EQ(defaultTuning(cpu).lanes, 1);
+    EXPECT_THAT(localSizeOf(defaultTuning(cpu), "unpack"), ElementsAre(8, 8));
     DeviceCaps noImages = fastGpu();
     noImages.imageFormats = {"RGBA8"};
     EXPECT_EQ(defaultTuning(noImages).storage, Storage::Planar);

@@ -32,7 +32,7 @@ namespace {
 
 constexpr double kMinGain = 1.05;    // what repeats of one candidate differ by on a machine with other programs
 constexpr double kMinShare = 0.01;   // of all kernels' time: a kernel below it keeps the table's group
-constexpr double kOutOfReach = 1.5;  // times the best of the first round: not measured again
+constexpr double kOutOfReach = 2.0;  // times the best of the first round: not measured again
 // Timed frames of a round, after one that compiles and allocates: enough to meet quiet moments, few on slow devices.
 constexpr int kMinFrames = 3, kMaxFrames = 10;
 constexpr double kEnoughMs = 300.0, kTooLongMs = 2000.0;

@@ -1,5 +1,6 @@
 // earthshine_bench: times kernels and frames by profiling events, tuned and naive in one run, against what the device
 // can do at best. bench/README.md says how to read it. Exit codes: 0 done, 1 failed, 2 wrong usage.
+//   earthshine_bench --tune ...: rows of the tuning table instead (tune.hpp)
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -19,6 +20,7 @@
 #include "revision.hpp"
 #include "row.hpp"
 #include "run_options.hpp"
+#include "tune.hpp"
 
 namespace earthshine::bench {
 
@@ -154,6 +156,10 @@ int run(Arguments& arguments) {
 int main(int argc, char** argv) {
     using namespace earthshine;
     try {
+        if (bench::asksToTune(argc, argv)) {
+            bench::tune(argc, argv);
+            return 0;
+        }
         bench::Arguments arguments(argc, argv);
         return arguments.takeFlag("--compare") ? bench::compare(arguments) : bench::run(arguments);
     } catch (const cl::Error& error) {

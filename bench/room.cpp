@@ -26,12 +26,16 @@ FrameSurfaces bring(const Device& device, const FrameInputs& frame) {
     return surfaces;
 }
 
-HostImage constantMotion(Extent extent) {
+// The same everywhere, along surfaces: to the depth that was there.
+HostImage constantMotion(const HostImage& depth) {
+    const Extent extent = depth.extent();
     HostImage motion(PixelFormat::RGBA32F, extent);
     for (int y = 0; y < extent.heightPx; ++y)
         for (int x = 0; x < extent.widthPx; ++x) {
             motion.pixel(x, y)[0] = 1.3f;
             motion.pixel(x, y)[1] = 0.6f;
+            const int thenX = std::min(x + 1, extent.widthPx - 1), thenY = std::min(y + 1, extent.heightPx - 1);
+            motion.pixel(x, y)[2] = *depth.pixel(thenX, thenY) - *depth.pixel(x, y);
         }
     return toHalf(motion.view());
 }
@@ -42,7 +46,7 @@ Room::Room(const Variant& variant, Extent size, bool moves, int rsmSizePx)
     : device(runOptions().device, variant.options), extent(size), pixels(double(size.widthPx) * size.heightPx) {
     const FrameImages& images = roomFrame(extent, rsmSizePx);
     FrameInputs frame = images.inputs();
-    const HostImage motion = moves ? constantMotion(extent) : HostImage();
+    const HostImage motion = moves ? constantMotion(images.depth) : HostImage();
     if (moves) frame.gbuffer.motion = motion.view();
     inputs = bring(device, frame);
     rays = makeViewRays(frame.camera, extent);

@@ -16,10 +16,9 @@ namespace {
 // The plane as it was seen: slope and offset, each a step along x and y. Is a tap on it: its distance at the point,
 // then a step along x and y, against a tolerance; the cosine. And what it adds.
 constexpr double kSeenPlane = 4 * kDot3 + (kDot3 + 2 * kFma), kTap = 2 + 4 * kFma + 1 + kDot3;
-constexpr double kAddTap = 1 + kMad3 + 2 * kFma;
-// 1 / weight, history by it, the confidence (place in a tile, two slopes) times it, the new length and share,
-// luminance, moment and blend.
-constexpr double kBlend = 2 + 3 + 1 + (3 + 6 + 1) + 2 + 1 + kLuminance + (3 + kFma) + kSub3 + kMad3 + 1;
+constexpr double kAddTap = 1 + kMad3 + 2 * kFma;  // of the moment's zero too
+// 1 / weight, history by it, the new length and share, blend, change of luminance. (No confidence, no moments.)
+constexpr double kBlend = 2 + 3 + 1 + 2 + 1 + kSub3 + kMad3 + 2 * kLuminance + 1;
 // Depth then; the plane; a tap, of weight 1.
 constexpr double kStill = 2 + kSeenPlane + kTap + kBlend;
 // The same; where it was, kept in range; four taps, each with its place and bilinear weight.
@@ -29,8 +28,8 @@ constexpr double kMoving = 2 + kSeenPlane + 6 + 2 + 4 * (2 + kTap + 3 + kAddTap)
 // and history where there is no sky. Taps that moving pixels share count once; none is lost, none is rescued.
 Row temporal(const Variant& variant, Extent extent, bool moves) {
     const Room room(variant, extent, moves);
-    const Surface in = room.noisy(), out = room.three(), outLength = room.one(), outMoment = room.one();
-    const HistorySurfaces history{room.noisy(), room.constant(8.0f), room.constant(1e5f)};
+    const Surface in = room.noisy(), out = room.three(), outLength = room.one(), outChange = room.one();
+    const HistorySurfaces history{room.noisy(), room.constant(8.0f), {}};
     const Extent tiles = HistoryCheckStage::tiles(extent);
     const cl::Buffer confidence =
         room.device.impl().upload(std::vector<float>(std::size_t(tiles.widthPx) * std::size_t(tiles.heightPx), 1.0f));
@@ -38,9 +37,8 @@ Row temporal(const Variant& variant, Extent extent, bool moves) {
     const TemporalParams params = room.params(settingsOf(Preset::Balanced), true).temporal;
     const auto stage = std::make_shared<TemporalStage>(room.device);
     const FrameSurfaces& i = room.inputs;
-    double bytes = room.bytes(
-        {i.depth, out, outLength, outMoment},
-        {in, i.normalWs, previous.normalWs, previous.depth, history.irradiance, history.length, history.moment});
+    double bytes = room.bytes({i.depth, out, outLength, outChange},
+                              {in, i.normalWs, previous.normalWs, previous.depth, history.irradiance, history.length});
     if (moves) bytes += room.bytes({}, {i.motion});
     return {.device = room.device,
             .run = launches(room.device,
@@ -48,19 +46,20 @@ Row temporal(const Variant& variant, Extent extent, bool moves) {
                                 const FrameSurfaces& now = room.inputs;
                                 stage->enqueue(
                                     {in, now.normalWs, now.depth, moves ? &now.motion : nullptr, previous.normalWs,
-                                     previous.depth, history, confidence, out, outLength, outMoment},
+                                     previous.depth, history, confidence, out, outLength, Surface(), outChange},
                                     params);
                             }),
             .work = {.bytes = bytes, .flops = (moves ? kMoving : kStill) * room.seenPixels}};
 }
 
-// history_check: bytes: both pictures; a pixel: two luminances, a limit, the difference, two sums. history_confidence:
-// bytes: two sums in, one number out a tile; a tile: sums over 3 x 3, two confidences (a ratio, a slope, a clamp), the
-// lesser.
+// history_check: bytes: the changes, and two sums a row of a tile; a pixel: two sums. history_confidence: bytes: the
+// sums in, one number out a tile; a tile: sums over the rows of 3 x 3 and of its own, two confidences (a ratio, a
+// slope, a clamp), the lesser.
 Row historyCheck(const Variant& variant, Extent extent, bool isConfidence) {
-    constexpr double kPixel = 2 * kLuminance + 1 + 1 + 1 + kFma, kTile = 9 * 2 + 2 * 6 + 1;
+    constexpr double kPixel = 1 + kFma, kTile = (9 + 1) * CONFIDENCE_TILE_PX * 2 + 2 * 6 + 1;
+    constexpr double kSums = 2 * sizeof(float) * CONFIDENCE_TILE_PX;  // bytes a tile
     const Room room(variant, extent);
-    const Surface in = room.noisy(), accumulated = room.noisy();
+    const Surface change = room.constant(1.0f);
     const Extent tiles = HistoryCheckStage::tiles(extent);
     const double tileCount = double(tiles.widthPx) * tiles.heightPx;
     const cl::Buffer confidence = room.device.impl().makeBuffer(sizeof(float) * std::size_t(tileCount));
@@ -70,11 +69,11 @@ Row historyCheck(const Variant& variant, Extent extent, bool isConfidence) {
             .run = launches(
                 room.device,
                 [=] {
-                    stage->enqueue({in, accumulated, confidence}, params);
+                    stage->enqueue({change, confidence}, params);
                 },
                 isConfidence ? "history_confidence" : "history_check"),
-            .work = isConfidence ? Work{12 * tileCount, kTile * tileCount}
-                                 : Work{room.bytes({in, accumulated}), kPixel * room.pixels}};
+            .work = isConfidence ? Work{(kSums + 4) * tileCount, kTile * tileCount}
+                                 : Work{room.bytes({change}) + kSums * tileCount, kPixel * room.pixels}};
 }
 
 }  // namespace

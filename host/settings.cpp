@@ -31,6 +31,7 @@ Settings settingsOf(Preset preset) {
     s.filterNormal = 1.0f;
     if (preset == Preset::Fast) {
         s.sampleCount = 2;
+        s.filterKernel = FilterKernel::Square3x3;
     } else if (preset == Preset::High) {
         s.sampleCount = 16;
         s.historyFrames = 64;

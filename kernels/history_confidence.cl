@@ -1,7 +1,8 @@
 // history_confidence: how far history is to be believed, a tile.
 //   R = (sum d)^2 / sum d^2 over pixels, with d what arrives less what is remembered (temporal.cl)
-//   Noise has no sign: R is about 1, whatever its size, fireflies or not (d's own spread is the yardstick). A light that
-//   changed pulls all pixels one way: R tends to their number. So no threshold depends on the scene.
+//   Noise has no sign: R is about 1, whatever its size (d's own spread is the yardstick). A light that changed pulls all
+//   pixels one way: R tends to their number. So no threshold depends on the scene. A pixel that outshines all others
+//   makes R 1 too, and hides a change around it until it has faded: fireflyFactor is against that.
 //   confidence = 1 up to keptBelow, 0 from droppedAbove on, linear between; the lesser of the tile's own and that of the
 //   3 x 3 tiles around it, whose nine times as many pixels tell a third of the change from noise.
 //   in   inSums          (sum d, sum d^2) of each row of a tile

@@ -4,7 +4,8 @@
 //   position  and normal: of one texel of the block, picked with a probability of flux (R + G + B) over the block's sum
 //   radius    of the disc whose area is that of all lit texels of the block
 //   A mean of positions or normals would lie on no surface, and its cosines lose energy wherever a block is not flat. A
-//   texel picked by its flux w_i stands for the block without bias: the expected value of W G_i is sum w_i G_i, W = sum w_i.
+//   texel picked by its flux w_i stands for the block: the expected value of W G_i is sum w_i G_i, W = sum w_i. Without bias
+//   but for the disc, which is the block's and not the texel's: what is nearer than its radius gets less light.
 //   For each channel that holds where a block is of one colour; else its colours mix, within the block. The other choice,
 //   the picked texel's colour times W / w_i, has no bias at all but conserves no channel and adds noise of colour.
 //   Blocks over the map's right and lower border are of the texels that are there.

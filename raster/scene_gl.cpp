@@ -11,6 +11,7 @@
 #include <glm/gtc/matrix_inverse.hpp>
 
 #include "earthshine/error.hpp"
+#include "parallel.hpp"
 #include "raster/scene/mipmaps.hpp"
 
 namespace earthshine::raster {
@@ -144,7 +145,13 @@ void SceneGl::uploadGeometry(const Scene& scene) {
 void SceneGl::uploadTextures(const Scene& scene) {
     const GlFunctions& gl = *gl_;
     gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    for (const Texture& texture : scene.textures) {
+    std::vector<std::vector<MipLevel>> mipLevels(scene.textures.size());
+    parallelFor(int(mipLevels.size()), 0, [&](int i) {
+        const Texture& texture = scene.textures[std::size_t(i)];
+        if (texture.mipmaps) mipLevels[std::size_t(i)] = smallerLevels(texture);
+    });
+    for (std::size_t i = 0; i < scene.textures.size(); ++i) {
+        const Texture& texture = scene.textures[i];
         const int most = context_->description().maxTextureSizePx;
         if (texture.widthPx > most || texture.heightPx > most)
             throw InputError(fmt::format(
@@ -166,10 +173,9 @@ void SceneGl::uploadTextures(const Scene& scene) {
                 put(GL_RGBA16, GL_UNSIGNED_SHORT, from.rgba16.data());
         };
         upload(0, texture);
-        if (texture.mipmaps) {
-            GLint level = 0;
-            for (const MipLevel& smaller : smallerLevels(texture)) upload(++level, smaller);
-        }
+        GLint level = 0;
+        for (const MipLevel& smaller : mipLevels[i]) upload(++level, smaller);
+        mipLevels[i].clear();
 
         const GLint nearest = texture.mipmaps ? GL_NEAREST_MIPMAP_LINEAR : GL_NEAREST;
         const GLint linear = texture.mipmaps ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR;

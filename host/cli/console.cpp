@@ -18,17 +18,38 @@ constexpr int kBarWidth = 40;
 
 Verbosity verbosity = Verbosity::Normal;
 bool barOnScreen = false;
+std::chrono::steady_clock::time_point opened;
+
+bool isTerminal() {
+    return ::isatty(STDERR_FILENO) == 1;
+}
 
 void eraseBar() {
     if (barOnScreen) std::fputs("\r\033[K", stderr);
     barOnScreen = false;
 }
 
+// A step of slow work: in one line of a terminal, elsewhere a line each once the program has run for a while.
+void showStep(std::string_view step) {
+    if (verbosity == Verbosity::Quiet) return;
+    if (isTerminal()) {
+        eraseBar();
+        if (step.empty()) return;
+        fmt::print(stderr, "earthshine: {}", step);
+        std::fflush(stderr);
+        barOnScreen = true;
+    } else if (!step.empty() && std::chrono::steady_clock::now() - opened > kPatience) {
+        fmt::print(stderr, "earthshine: {}\n", step);
+    }
+}
+
 }  // namespace
 
 void openConsole(Verbosity wanted) {
     verbosity = wanted;
+    opened = std::chrono::steady_clock::now();
     setLogSink([](LogLevel level, std::string_view message) {
+        if (level == LogLevel::Progress) return showStep(message);
         if (verbosity == Verbosity::Quiet || (verbosity == Verbosity::Normal && level != LogLevel::Warning)) return;
         complain(fmt::format("{}{}", level == LogLevel::Warning ? "warning: " : "", message));
     });
@@ -40,7 +61,7 @@ void complain(const std::string& message) {
 }
 
 Progress::Progress(std::string title)
-    : title_(std::move(title)), start_(Clock::now()), lastDrawn_(start_), terminal_(::isatty(STDERR_FILENO) == 1) {}
+    : title_(std::move(title)), start_(Clock::now()), lastDrawn_(start_), terminal_(isTerminal()) {}
 
 Progress::~Progress() {
     eraseBar();

@@ -13,6 +13,8 @@ void addDeviceOptions(Options& options, DeviceArguments& arguments) {
     options.text("--device", "N|NAME", arguments.spec,
                  "number or part of the name, see `earthshine devices` [$EARTHSHINE_DEVICE, else the first usable GPU, "
                  "else CPU]");
+    options.text("--tuning", "FILE", o.tuningFile,
+                 "rows of `earthshine_bench --tune` that go before the library's own [$EARTHSHINE_TUNING]");
     options.option("--lanes", "1|4|8|16", "", "pixels a work-item computes [the tuning table's]",
                    [&o](const std::string& text) {
                        static constexpr const char* kNames[] = {"1", "4", "8", "16"};
@@ -29,11 +31,12 @@ void addDeviceOptions(Options& options, DeviceArguments& arguments) {
                        static constexpr const char* kNames[] = {"off", "on"};
                        o.rsmRecords = parseChoice(text, kNames);
                    });
-    options.option("--local-size", "WxH", "", "work-items a group [the tuning table's]", [&o](const std::string& text) {
-        const Extent size = parseExtent(text, 4096);
-        o.localSizePx[0] = size.widthPx;
-        o.localSizePx[1] = size.heightPx;
-    });
+    options.option("--local-size", "WxH", "", "work-items a group of every kernel [the tuning table's]",
+                   [&o](const std::string& text) {
+                       const Extent size = parseExtent(text, 4096);
+                       o.localSizePx[0] = size.widthPx;
+                       o.localSizePx[1] = size.heightPx;
+                   });
 }
 
 DeviceChoice chooseDevice(const DeviceArguments& arguments) {

@@ -44,6 +44,8 @@ std::string describe(const DeviceCaps& caps, bool chosen) {
     line("tuning", fmt::format("lanes {}, {} storage, {}, groups of {}x{}", t.lanes,
                                t.storage == Storage::Image ? "image" : "planar",
                                t.rsmRecords ? "packed RSM" : "RSM images", t.localSizePx[0], t.localSizePx[1]));
+    for (const Tuning::Group& group : t.groups)
+        line("", fmt::format("{:<18} {}x{}", group.kernel, group.localSizePx[0], group.localSizePx[1]));
     line("", fmt::format("({})", t.reason));
     return text;
 }

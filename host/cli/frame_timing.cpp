@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
+#include <fstream>
+#include <sstream>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace earthshine::cli {
 
@@ -79,6 +83,19 @@ double indirectMs(const std::vector<StageTime>& times) {
                                   "bilateral_upsample", "interpolate"})
             if (time.stage.starts_with(start)) sum += time.ms;
     return sum;
+}
+
+double processMs() {
+    // /proc/self/stat: the 22nd field is the start, in ticks since boot; the 2nd, in brackets, may hold spaces.
+    std::ifstream in("/proc/self/stat");
+    std::string text, field;
+    std::getline(in, text);
+    std::istringstream fields(text.substr(std::min(text.rfind(')') + 1, text.size())));
+    for (int i = 3; i <= 22; ++i) fields >> field;
+    timespec now{};
+    if (!fields || ::clock_gettime(CLOCK_BOOTTIME, &now) != 0) return 0.0;
+    const double startMs = 1e3 * std::stod(field) / double(::sysconf(_SC_CLK_TCK));
+    return 1e3 * double(now.tv_sec) + 1e-6 * double(now.tv_nsec) - startMs;
 }
 
 Stopwatch::Stopwatch() : startNs_(nowNs()) {}

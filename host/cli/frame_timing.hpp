@@ -43,6 +43,9 @@ private:
 /// Milliseconds of the stages of indirect light: what reads the RSM, what denoises, what changes the resolution.
 double indirectMs(const std::vector<StageTime>& times);
 
+/// Milliseconds since the system started this process, in ticks of 10 ms; 0 if it does not say.
+double processMs();
+
 /// Milliseconds since it was made.
 class Stopwatch {
 public:

@@ -39,6 +39,12 @@ struct RenderArguments {
 };
 
 void renderScene(const RenderArguments& arguments) {
+    // From the start of the process to the first pixel: what each part took, in order.
+    nlohmann::ordered_json start = {{"untilCommandMs", processMs()}};
+    auto note = [&start, watch = Stopwatch()](const char* part) mutable {
+        start[part] = watch.ms();
+        watch = Stopwatch();
+    };
     // What can be refused is refused before anything slow is done.
     OutputSet outputs;
     Sequence sequence(arguments.sequence);
@@ -48,19 +54,24 @@ void renderScene(const RenderArguments& arguments) {
         arguments.saveInputs.empty() ? std::filesystem::path() : outputs.addFolder(arguments.saveInputs, kInputsFile);
     validate(arguments.settings);
     const DeviceChoice choice = chooseDevice(arguments.device);
+    note("devicesMs");
 
     // The GL context outlives everything of OpenCL's: drivers that share objects between the two insist on it.
     const std::unique_ptr<raster::GlContext> context = raster::createContext(arguments.raster.gl);
+    note("glContextMs");
 
     const Stopwatch load;
     raster::Scene scene = loadScene(arguments.scene);
     sequence.begin(scene, arguments.raster);
     const std::vector<int> movedInstances = sequence.movedInstances();
     const double loadMs = load.ms();
+    note("sceneMs");
 
     raster::SceneRenderer renderer(*context, scene);
+    note("uploadMs");
     const Device device(choice.caps, arguments.device.options);
     Pipeline pipeline(device);
+    note("pipelineMs");
     log(LogLevel::Info, "transport host: textures are read back into memory that OpenCL uses in place");
 
     FrameImages images;
@@ -93,6 +104,10 @@ void renderScene(const RenderArguments& arguments) {
             pipeline.run(arguments.settings,
                          [&](double part) { progress.update((i + warmupCount + part) / (frameCount + warmupCount)); });
             timing.addStep("compute", compute.ms());
+            if (i == -warmupCount) {
+                note("firstFrameMs");
+                start["firstPixelMs"] = processMs();
+            }
             timing.addStep("frame", whole.ms());
             timing.addStages(pipeline.stageTimes());
             if (i >= firstFrame) files.write(i, pipeline, images.inputs());
@@ -117,6 +132,7 @@ void renderScene(const RenderArguments& arguments) {
     report["sequence"] = sequenceJson(arguments.sequence);
     report["transport"] = "host";
     report["loadMs"] = loadMs;
+    report["start"] = start;
     addFrame(report, {device, choice.why, arguments.settings, timing, frameCount, pipeline.exposure(),
                       pipeline.gatheredPixels(), files.nonFinite(), paths});
     files.finish(readableJson(report));

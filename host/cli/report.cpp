@@ -13,11 +13,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json tuningJson(const Tuning& tuning) {
-    return {{"lanes", tuning.lanes},
-            {"storage", tuning.storage == Storage::Image ? "image" : "planar"},
-            {"rsmRecords", tuning.rsmRecords},
-            {"localSize", {tuning.localSizePx[0], tuning.localSizePx[1]}},
-            {"reason", tuning.reason}};
+    Json groups = Json::object();
+    for (const Tuning::Group& group : tuning.groups)
+        groups[group.kernel] = {group.localSizePx[0], group.localSizePx[1]};
+    return {{"lanes", tuning.lanes},           {"storage", tuning.storage == Storage::Image ? "image" : "planar"},
+            {"rsmRecords", tuning.rsmRecords}, {"localSize", {tuning.localSizePx[0], tuning.localSizePx[1]}},
+            {"kernelLocalSizes", groups},      {"reason", tuning.reason}};
 }
 
 Json seriesJson(const char* kind, const std::string& name, const Series& series) {

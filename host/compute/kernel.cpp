@@ -8,6 +8,7 @@
 
 #include "compute/kernel_source.hpp"
 #include "compute/program_cache.hpp"
+#include "compute/tuning.hpp"
 #include "earthshine/error.hpp"
 
 namespace earthshine {
@@ -22,26 +23,28 @@ std::string buildOptions(const DeviceCaps& caps, const Tuning& tuning) {
 
 }  // namespace
 
-Kernel::Kernel(const Device& device, std::string name, const std::string& text)
-    : device_(device), name_(std::move(name)) {
+void Kernel::build() {
+    if (kernel_()) return;
     Device::Impl& impl = device_.impl();
     const std::string& folder = impl.options.kernelFolder;
     const std::string source =
-        text.empty() ? expandKernel(name_ + ".cl", folder) : expandKernelText(name_ + ".cl", text, folder);
+        text_.empty() ? expandKernel(name_ + ".cl", folder) : expandKernelText(name_ + ".cl", text_, folder);
     arguments_ = argumentNames(source, name_, impl.tuning.rsmRecords);
     impl.checked(name_ + ": building", [&] {
         const cl::Program program = buildProgram(impl.context, impl.device, name_, source,
                                                  buildOptions(impl.caps, impl.tuning), impl.cacheFolder);
-        kernel_ = cl::Kernel(program, name_.c_str());
-        const auto limit = kernel_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(impl.device);
-        localSize_[0] = std::min<std::size_t>(std::size_t(impl.tuning.localSizePx[0]), limit);
-        localSize_[1] = std::max<std::size_t>(
-            std::min<std::size_t>(std::size_t(impl.tuning.localSizePx[1]), limit / localSize_[0]), 1);
+        const cl::Kernel kernel(program, name_.c_str());
+        const auto limit = kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(impl.device);
+        const std::array<int, 2> wanted = localSizeOf(impl.tuning, name_);
+        localSize_[0] = std::min<std::size_t>(std::size_t(wanted[0]), limit);
+        localSize_[1] = std::max<std::size_t>(std::min<std::size_t>(std::size_t(wanted[1]), limit / localSize_[0]), 1);
+        kernel_ = kernel;
         return 0;
     });
 }
 
 void Kernel::setRaw(std::string_view argument, std::size_t size, const void* value) {
+    build();
     const auto at = std::find(arguments_.begin(), arguments_.end(), argument);
     if (at == arguments_.end()) throw DeviceError(fmt::format("{}: the kernel has no argument '{}'", name_, argument));
     device_.impl().checked(fmt::format("{}: argument '{}' of {} bytes", name_, argument, size), [&] {
@@ -72,6 +75,7 @@ void Kernel::enqueue(Extent extent) {
 
 void Kernel::enqueueItems(std::size_t x, std::size_t y) {
     if (x == 0 || y == 0) return;
+    build();
     Device::Impl& impl = device_.impl();
     impl.checked(fmt::format("{}: launching {} x {} items", name_, x, y), [&] {
         const cl::NDRange local(localSize_[0], localSize_[1]);

@@ -1,8 +1,10 @@
 #pragma once
 // A kernel with arguments by name, and the one way to launch it.
 
+#include <array>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compute/device_impl.hpp"
@@ -10,12 +12,16 @@
 
 namespace earthshine {
 
-/// One kernel built for a device's lanes, storage and records. Not thread-safe: arguments are its state.
+/// One kernel for a device's lanes, storage and records. Not thread-safe: arguments are its state.
 class Kernel {
 public:
-    /// Builds kernels/NAME.cl and takes its kernel NAME; or builds `text`, which is not among the library's kernels,
-    /// but what it includes is. Throws BuildError with the compiler's log.
-    Kernel(const Device& device, std::string name, const std::string& text = {});
+    /// Kernel NAME of kernels/NAME.cl; or of `text`, which is not among the library's kernels, but what it includes is.
+    /// It is built when it is first used: a frame waits for none that it does not need.
+    Kernel(const Device& device, std::string name, std::string text = {})
+        : device_(device), name_(std::move(name)), text_(std::move(text)) {}
+
+    /// Builds it, if nothing has yet; what follows does so too. Throws BuildError with the compiler's log.
+    void build();
 
     /// Sets the argument that the kernel's source calls `argument`; a surface also sets its layout.
     /// Throws DeviceError if there is no such argument or the driver refuses the value.
@@ -32,15 +38,21 @@ public:
     /// Launches `x` by `y` work-items, rounded up to whole groups.
     void enqueueItems(std::size_t x, std::size_t y);
 
+    /// Work-items a group, x and y: the tuning table's, within the kernel's own limit.
+    std::array<std::size_t, 2> localSize() {
+        build();
+        return localSize_;
+    }
+
 private:
     void setRaw(std::string_view argument, std::size_t size, const void* value);
     void setMemory(std::string_view argument, const cl::Memory& memory);
 
     Device device_;
-    std::string name_;
+    std::string name_, text_;
     cl::Kernel kernel_;
     std::vector<std::string> arguments_;
-    std::size_t localSize_[2] = {1, 1};
+    std::array<std::size_t, 2> localSize_{1, 1};
 };
 
 }  // namespace earthshine

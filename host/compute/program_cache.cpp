@@ -74,6 +74,13 @@ void writeEntry(const fs::path& path, const std::string& key, const std::vector<
 
 cl::Program buildFromSource(const cl::Context& context, const cl::Device& device, const std::string& name,
                             const std::string& source, const std::string& options, const std::string& deviceName) {
+    // Until the end of this scope, whatever comes of it.
+    struct Shown {
+        explicit Shown(const std::string& kernel) { log(LogLevel::Progress, "compiling kernel " + kernel); }
+        Shown(const Shown&) = delete;
+        Shown& operator=(const Shown&) = delete;
+        ~Shown() { log(LogLevel::Progress, ""); }
+    } const shown(name);
     cl::Program program(context, source);
     try {
         program.build({device}, options.c_str());

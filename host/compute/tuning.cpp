@@ -5,59 +5,45 @@
 #include <algorithm>
 #include <iterator>
 
-#include "compute/quirks.hpp"
+#include "compute/tuning_table.hpp"
 #include "earthshine/error.hpp"
 
 namespace earthshine {
+
+namespace {
+
+constexpr const char* kSurfaceFormats[] = {"R32F", "RGBA16F", "RGBA32F"};
+
+void clampGroup(int (&localSizePx)[2], std::size_t maxItems) {
+    const int most = int(std::max<std::size_t>(maxItems, 1));
+    localSizePx[0] = std::clamp(localSizePx[0], 1, most);
+    localSizePx[1] = std::clamp(localSizePx[1], 1, most / localSizePx[0]);
+}
+
+}  // namespace
 
 const char* storageName(Storage storage) {
     return storage == Storage::Image ? "image" : "planar";
 }
 
-namespace {
-constexpr const char* kSurfaceFormats[] = {"R32F", "RGBA16F", "RGBA32F"};
-}
-
-Tuning defaultTuning(const DeviceCaps& caps) {
-    Tuning t;
+Tuning defaultTuning(const DeviceCaps& caps, const std::string& file) {
+    Tuning t = lookUpTuning(tuningRows(file), caps);
     const bool hasImages = std::all_of(std::begin(kSurfaceFormats), std::end(kSurfaceFormats), [&](const char* format) {
         return std::find(caps.imageFormats.begin(), caps.imageFormats.end(), format) != caps.imageFormats.end();
     });
-    if (runsOnLlvmpipe(caps)) {
-        // Mesa's llvmpipe vectorises across work-items by itself, and its texture unit is its fast path.
-        t.lanes = 1;
-        t.storage = hasImages ? Storage::Image : Storage::Planar;
-        t.localSizePx[0] = 8;
-        t.localSizePx[1] = 8;
-        t.reason = "rusticl on llvmpipe";
-    } else if (caps.type == "CPU") {
-        // Vectors as wide as the registers, whole cache lines of planes. Groups as wide as a row of a picture: a thread
-        // walks along rows, whose memory comes in ahead of it (18 % faster filters at 1920 x 1080 than groups of 4 x
-        // 2).
-        t.lanes = caps.nativeFloatWidth >= 16 ? 16 : caps.nativeFloatWidth >= 8 ? 8 : 4;
-        t.storage = Storage::Planar;
-        t.localSizePx[0] = 64;
-        t.localSizePx[1] = 4;
-        t.reason = fmt::format("CPU with a native width of {} floats", caps.nativeFloatWidth);
-    } else {
-        t.lanes = 1;
-        t.storage = hasImages ? Storage::Image : Storage::Planar;
-        t.localSizePx[0] = 16;
-        t.localSizePx[1] = 8;
-        t.reason = caps.type;
-    }
+    const bool wantsImages = t.storage == Storage::Image;
+    if (wantsImages && !hasImages) t.storage = Storage::Planar;
     t.reason += fmt::format(": {} pixel{} a work-item, {}", t.lanes, t.lanes == 1 ? "" : "s",
                             t.storage == Storage::Image ? "images"
-                            : hasImages                 ? "planes"
+                            : !wantsImages              ? "planes"
                                                         : "planes for want of images");
-    const int maxItems = int(std::max<std::size_t>(caps.maxWorkGroupSize, 1));
-    t.localSizePx[0] = std::min(t.localSizePx[0], maxItems);
-    t.localSizePx[1] = std::min(t.localSizePx[1], maxItems / t.localSizePx[0]);
+    clampGroup(t.localSizePx, caps.maxWorkGroupSize);
+    for (Tuning::Group& group : t.groups) clampGroup(group.localSizePx, caps.maxWorkGroupSize);
     return t;
 }
 
 Tuning tuningFor(const DeviceCaps& caps, const DeviceOptions& options) {
-    Tuning t = defaultTuning(caps);
+    Tuning t = defaultTuning(caps, options.tuningFile);
     if (options.lanes != 0) {
         if (options.lanes != 1 && options.lanes != 4 && options.lanes != 8 && options.lanes != 16)
             throw UsageError(fmt::format("lanes: {} is none of 1, 4, 8, 16", options.lanes));
@@ -75,12 +61,20 @@ Tuning tuningFor(const DeviceCaps& caps, const DeviceOptions& options) {
     if (options.rsmRecords >= 0) t.rsmRecords = options.rsmRecords != 0;
     for (int i = 0; i < 2; ++i) {
         if (options.localSizePx[i] < 0) throw UsageError("local size: must not be negative");
-        if (options.localSizePx[i] > 0) t.localSizePx[i] = options.localSizePx[i];
+        if (options.localSizePx[i] == 0) continue;
+        t.localSizePx[i] = options.localSizePx[i];
+        t.groups.clear();
     }
     if (std::size_t(t.localSizePx[0]) * std::size_t(t.localSizePx[1]) > std::max<std::size_t>(caps.maxWorkGroupSize, 1))
         throw UsageError(fmt::format("local size: {} x {} is more than the {} work-items of \"{}\"", t.localSizePx[0],
                                      t.localSizePx[1], caps.maxWorkGroupSize, caps.name));
     return t;
+}
+
+std::array<int, 2> localSizeOf(const Tuning& tuning, const std::string& kernel) {
+    for (const Tuning::Group& group : tuning.groups)
+        if (group.kernel == kernel) return {group.localSizePx[0], group.localSizePx[1]};
+    return {tuning.localSizePx[0], tuning.localSizePx[1]};
 }
 
 }  // namespace earthshine

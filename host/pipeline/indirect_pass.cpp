@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "compute/tuning.hpp"
 #include "stages/blue_noise.hpp"
 #include "stages/frame_params.hpp"
 
@@ -56,7 +57,7 @@ void IndirectPass::sumInBands(const FrameSurfaces& inputs, const RsmSumParams& p
                               const std::function<void(double)>& progress) {
     constexpr double kPairsPerLaunch = 5e8;
     const Extent extent = sampled_.extent();
-    const int groupRows = device_.tuning().localSizePx[1];
+    const int groupRows = localSizeOf(device_.tuning(), "rsm_sum")[1];
     const double pairsPerRow =
         double(extent.widthPx) * params.rsmSizePx * double(params.rsmSizePx) * std::max(inputs.rsm.lightCount, 1);
     const int rows =

@@ -14,7 +14,6 @@ namespace earthshine {
 /// Thread-compatible; owns the picked surfaces of this frame and the one before.
 class LowerResolution {
 public:
-    /// Builds four kernels.
     explicit LowerResolution(const Device& device);
 
     /// Picks normal, depth and motion of a frame; what was picked of the frame before becomes `previous`.

@@ -47,6 +47,24 @@ TEST(Devices, JsonHoldsTheSame) {
     EXPECT_NE(json["why"], "");
 }
 
+TEST(Devices, AUsersTuningIsShownWithItsSource) {
+    const test::TempFolder folder;
+    const std::string path = (folder / "own.tuning").string();
+    test::writeText(path, "default * * 1 planar 8x2\ndefault * rsm_gather - - 4x3\n");
+    const std::vector<std::string> environment{"EARTHSHINE_TUNING=" + path};
+    const Result table = runEarthshine({"devices"}, environment);
+    EXPECT_EQ(table.exitCode, 0) << table.err;
+    EXPECT_THAT(table.out, HasSubstr("lanes 1, planar storage, packed RSM, groups of 8x2\n"));
+    EXPECT_THAT(table.out, HasSubstr("rsm_gather         4x3\n"));
+    EXPECT_THAT(table.out, HasSubstr(path + ", default: 1 pixel a work-item, planes"));
+    const Result json = runEarthshine({"devices", "--json"}, environment);
+    EXPECT_THAT(json.out, HasSubstr("\"rsm_gather\""));
+    test::writeText(path, "default * * 3 planar 8x2\n");
+    const Result refused = runEarthshine({"devices"}, environment);
+    EXPECT_EQ(refused.exitCode, 1);
+    EXPECT_EQ(refused.err, "earthshine: " + path + ":1: lanes '3' is none of 1, 4, 8, 16, native, -\n");
+}
+
 TEST(Devices, WithoutAnyTheProgramSaysSo) {
     const test::TempFolder empty;  // of drivers; with the slash for ocl-icd, which else takes it for a file
     const std::vector<std::string> none{"OCL_ICD_VENDORS=" + empty.path().string() + "/", "OCL_ICD_FILENAMES="};

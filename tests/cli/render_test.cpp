@@ -168,6 +168,8 @@ TEST_F(Render, TheReportHoldsEverySettingAsItWasGiven) {
     EXPECT_GT(report["deviceMemoryBytes"], 64 * 36 * 100);  // a frame's surfaces have more than a hundred bytes a pixel
     EXPECT_EQ(report["frames"], 3);
     EXPECT_EQ(report["framesTimed"], 3);  // and one ahead of them
+    EXPECT_GT(report["start"]["firstFrameMs"], 0.0);
+    EXPECT_GT(report["start"]["firstPixelMs"], report["start"]["firstFrameMs"]);
     EXPECT_EQ(report["sequence"]["warmup"], 1);
     EXPECT_EQ(report["outputs"], (std::vector<std::string>{path("a.png"), path("r.json")}));
     ASSERT_GT(report["stages"].size(), 3u);

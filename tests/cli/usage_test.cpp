@@ -76,6 +76,8 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Values, Refused,
     ::testing::Values(
+        Refusal{{"render", "@scene", "-o", "@/a.png", "--tuning", "@/text.glb"}, 1, "text.glb:1: 4 columns, must be 6"},
+        Refusal{{"render", "@scene", "-o", "@/a.png", "--tuning", "@/none"}, 1, "none: cannot be opened"},
         Refusal{{"render", "@scene", "-o", "@/a.png", "--size", "0x0"}, 2, "--size: 0 is not in [1; 16384]"},
         Refusal{{"render", "@scene", "-o", "@/a.png", "--size", "-64x36"}, 2, "--size: -64 is not in"},
         Refusal{{"render", "@scene", "-o", "@/a.png", "--size", "20000x2"}, 2, "--size: 20000 is not in"},

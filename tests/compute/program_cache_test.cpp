@@ -11,7 +11,10 @@
 #include "compute/kernel.hpp"
 #include "compute/quirks.hpp"
 #include "earthshine/error.hpp"
+#include "earthshine/log.hpp"
+#include "earthshine/pipeline.hpp"
 #include "reference/device_variants.hpp"
+#include "reference/synthetic_frame.hpp"
 #include "support/kernel_folder.hpp"
 
 namespace earthshine {
@@ -156,12 +159,12 @@ TEST_P(ProgramCache, AChangedIncludeIsBuilt) {
     reference::Variant variant = GetParam();
     variant.options.kernelFolder = kernels.path();
     variant.options.cacheFolder = path_;
-    const Kernel before(Device(variant.caps, variant.options), "modulate");
+    Kernel(Device(variant.caps, variant.options), "modulate").build();
     const std::size_t entries = folder_.names().size();
-    const Kernel same(Device(variant.caps, variant.options), "modulate");
+    Kernel(Device(variant.caps, variant.options), "modulate").build();
     EXPECT_EQ(folder_.names().size(), entries);
     kernels.replace("common/math.clh", "#define ES_INV_PI 0.318309886183791f", "#define ES_INV_PI 0.25f");
-    const Kernel after(Device(variant.caps, variant.options), "modulate");
+    Kernel(Device(variant.caps, variant.options), "modulate").build();
     EXPECT_EQ(folder_.names().size(), entries + 1);
 }
 
@@ -174,7 +177,7 @@ TEST_P(ProgramCache, AFailedBuildNamesFileAndLine) {
     variant.options.kernelFolder = kernels.path();
     variant.options.cacheFolder = path_;
     try {
-        const Kernel kernel(Device(variant.caps, variant.options), "modulate");
+        Kernel(Device(variant.caps, variant.options), "modulate").build();
         FAIL() << "it was built";
     } catch (const BuildError& error) {
         EXPECT_THAT(error.what(), testing::StartsWith("modulate.cl: "));
@@ -183,6 +186,49 @@ TEST_P(ProgramCache, AFailedBuildNamesFileAndLine) {
         EXPECT_THAT(error.log(), testing::HasSubstr("noSuchType"));
     }
     EXPECT_TRUE(folder_.names().empty());
+}
+
+/// The kernels that are compiled while it lives, in order, as the log tells of them.
+class Compiled {
+public:
+    Compiled() {
+        setLogSink([this](LogLevel level, std::string_view line) {
+            constexpr std::string_view kBegin = "compiling kernel ";
+            if (level != LogLevel::Progress) return;
+            if (line.starts_with(kBegin)) names.emplace_back(line.substr(kBegin.size()));
+            isOver = line.empty();
+        });
+    }
+    ~Compiled() { setLogSink({}); }
+    Compiled(const Compiled&) = delete;
+    Compiled& operator=(const Compiled&) = delete;
+
+    std::vector<std::string> names;
+    bool isOver = false;
+};
+
+// Cold: only what a frame needs, each once, and said so. Warm: nothing.
+TEST_P(ProgramCache, AFrameCompilesWhatItNeedsOnce) {
+    const FrameImages images = reference::makeSyntheticFrame();
+    reference::Variant variant = GetParam();
+    variant.options.cacheFolder = path_;
+    const auto compiledBy = [&](std::initializer_list<Settings> runs) {
+        const Compiled compiled;
+        Pipeline pipeline{Device(variant.caps, variant.options)};
+        pipeline.setFrame(images.inputs());
+        for (const Settings& settings : runs) pipeline.run(settings);
+        EXPECT_EQ(compiled.isOver, !compiled.names.empty());
+        return compiled.names;
+    };
+    const Settings plain = settingsOf(Preset::Still), denoised = settingsOf(Preset::Balanced);
+    EXPECT_THAT(compiledBy({plain, plain}),
+                testing::UnorderedElementsAre("unpack", "interleave", "direct_light", "rsm_pack", "rsm_gather",
+                                              "modulate", "luminance_sum", "exposure", "tone_map"));
+    EXPECT_THAT(compiledBy({plain, denoised}),
+                testing::UnorderedElementsAre("temporal", "history_check", "history_confidence", "atrous"));
+    EXPECT_THAT(compiledBy({plain, denoised}), testing::IsEmpty());
+    variant.options.cacheFolder = "none";
+    EXPECT_THAT(compiledBy({denoised}), testing::SizeIs(13));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ProgramCache, testing::ValuesIn(reference::defaultVariants()),

@@ -10,13 +10,19 @@ namespace earthshine {
 /// How a kernel's surfaces are kept: OpenCL images, or one buffer of float planes with padded rows.
 enum class Storage { Image, Planar };
 
-/// How kernels are built and launched on a device. Defaults come from the tuning table (kernels/README.md).
+/// How kernels are built and launched on a device. Defaults come from the tuning table (bench/README.md).
 struct Tuning {
+    struct Group {
+        std::string kernel;
+        int localSizePx[2];
+    };
+
     int lanes = 1;                     ///< pixels a work-item computes: 1, 4, 8 or 16
     Storage storage = Storage::Image;  ///< of every surface
     bool rsmRecords = true;            ///< gather from packed 32-byte records; false: from the RSM's three images
-    int localSizePx[2] = {0, 0};       ///< work-items a group, x and y
-    std::string reason;                ///< one line: where these values come from
+    int localSizePx[2] = {1, 1};       ///< work-items a group, x and y
+    std::vector<Group> groups;         ///< the same of kernels that have their own
+    std::string reason;                ///< one line: where lanes and storage come from
 };
 
 /// What a device can do, asked once.
@@ -53,11 +59,12 @@ DeviceCaps selectDevice(const std::string& spec, std::string* why = nullptr);
 
 /// What to change of a device's own defaults; for experiments and tests.
 struct DeviceOptions {
-    int lanes = 0;        ///< 0 = the tuning table's
-    std::string storage;  ///< "image", "planar", "" = the tuning table's
-    int rsmRecords = -1;  ///< 0, 1, -1 = the tuning table's
-    int localSizePx[2] = {0, 0};
-    bool profiling = false;  ///< stage times by profiling events; slows some drivers down (Intel's by up to 1.8x)
+    int lanes = 0;                ///< 0 = the tuning table's
+    std::string storage;          ///< "image", "planar", "" = the tuning table's
+    int rsmRecords = -1;          ///< 0, 1, -1 = the tuning table's
+    int localSizePx[2] = {0, 0};  ///< of every kernel; 0 = the tuning table's
+    std::string tuningFile;       ///< rows that go before the library's own; "" = $EARTHSHINE_TUNING or none
+    bool profiling = false;       ///< stage times by profiling events; slows some drivers down (Intel's by up to 1.8x)
     std::string
         kernelFolder;         ///< read kernel sources from here, not from the library; "" = $EARTHSHINE_KERNELS or none
     std::string cacheFolder;  ///< "" = $EARTHSHINE_CACHE, else $XDG_CACHE_HOME/earthshine, else ~/.cache/earthshine;

@@ -6,7 +6,12 @@
 
 namespace earthshine {
 
-enum class LogLevel { Debug, Info, Warning };
+enum class LogLevel {
+    Debug,
+    Info,
+    Progress,  ///< slow work has begun: shown until the next one; an empty line says that it is over
+    Warning
+};
 
 using LogSink = std::function<void(LogLevel, std::string_view)>;
 

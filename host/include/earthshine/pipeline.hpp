@@ -31,8 +31,9 @@ struct StageTime {
     double ms = 0;      ///< on the device, by profiling events; 0 unless DeviceOptions::profiling
 };
 
-/// Runs frames on one device. Construction builds every kernel (slow, cached); surfaces are allocated by the first
-/// frame and whenever an extent changes. Thread-compatible; pipelines on one Device share its queue, and so its thread.
+/// Runs frames on one device. Each kernel is built by the first run that needs it (slow, cached; the log hears of it);
+/// surfaces are allocated by the first frame and whenever an extent changes. Thread-compatible; pipelines on one Device
+/// share its queue, and so its thread.
 class Pipeline {
 public:
     explicit Pipeline(const Device& device);

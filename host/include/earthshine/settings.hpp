@@ -23,7 +23,8 @@ inline constexpr const char* kDiskPatternNames[] = {"hammersley", "line"};
 
 /// How each pixel moves the pattern.
 enum class Rotation {
-    Off,    ///< not at all: bands, no noise
+    Off,    ///< not at all: bands, no noise. With animatesNoise frames turn all pixels alike, which antiLag takes for a
+            ///< change of light in every frame: turn one of them off
     Noise,  ///< blue noise turns and shifts it
     Tile,   ///< by one of 16 angles, the same every 4 x 4 pixels; then the mean over as many, as far as they are one
             ///< surface: no noise. Pixels that Upsampling::Interpolate gathers in full stay unaveraged; frames turn all
@@ -75,34 +76,42 @@ struct Settings {
     float radiusUv = 1.4143f;               ///< (0; 2] (fraction of the RSM's side) - disk: radius; sqrt(2) covers the
                                             ///< map from anywhere, less gives up energy for less noise
     Rotation rotation = Rotation::Noise;    ///< disk: how each pixel moves the pattern
-    bool animatesNoise = true;              ///< disk: each frame moves the pattern, so that frames' mean converges
+    bool animatesNoise = true;              ///< disk: each frame moves the pattern, so that frames' mean converges; and
+                                            ///< picks other texels of a minified RSM
     DiskPattern pattern = DiskPattern::Hammersley;  ///< disk: where samples lie before noise moves them
     RadiusMapping mapping = RadiusMapping::Area;    ///< disk: how samples are spread over radii
-    int rsmMinify = 1;  ///< 1, 2, 4 or 8 (RSM texels a side) - this many squared become one texel of
-                        ///< their summed flux, before estimators read them; needs packed records
+    int rsmMinify = 1;  ///< 1, 2, 4 or 8 (RSM texels a side) - this many squared become one texel of their summed
+                        ///< flux, before estimators read them; needs packed records. Texels are larger discs then,
+                        ///< whose light on what is near them is less (tests/README.md has numbers)
     int divisor = 1;    ///< 1, 2 or 4 - indirect light is computed at this part of width and height
     Upsampling upsampling = Upsampling::Bilateral;  ///< how it then comes to every pixel; interpolate: disk only
     bool accumulates = false;                       ///< frames are averaged over time, along motion vectors
     int historyFrames = 32;                         ///< [1; 1024] (frames) - accumulate: what history is worth at most
-    float antiLag = 16.0f;       ///< [0; 256] - accumulate: history is dropped where the light changed by more than
-                                 ///< sqrt of this times the tile's noise; 0 = never
-    float fireflyFactor = 0.0f;  ///< [0; 1000] - accumulate: a pixel may be this much brighter than all around it and
-                                 ///< its history; 0 = as bright as it is
+    float antiLag = 16.0f;       ///< 0 or [2; 256] - accumulate: history is dropped where the light changed by more
+                                 ///< than sqrt of this times the noise of 16 x 16 pixels, or of 48 x 48; 0 = never.
+                                 ///< Where fewer pixels than this are lit, no change is seen
+    float fireflyFactor = 0.0f;  ///< 0 or [1; 1000] - accumulate: a pixel may be this much brighter than all around it
+                                 ///< and its history; 0 = as bright as it is. Takes light away: 16 takes 3 % of the
+                                 ///< Cornell box's at 8 samples
     int filterIterations = 0;    ///< [0; 7] - iterations of the spatial filter, each with twice the step; 0 = none
-    FilterKernel filterKernel = FilterKernel::Separable;
-    FilterWeights filterWeights = FilterWeights::Plane;
-    float filterDepth = 0.25f;      ///< [0.001; 1000] - plane: m off the plane a m aside; depth: m a step
-    float filterNormal = 0.3f;      ///< [0.001; 1000] - squared difference of unit normals at which a tap counts for
-                                    ///< nothing (plane) or 1/e (depth)
-    float filterLuminance = 0.0f;   ///< [0; 1000] (standard deviations) - plane: luminance difference at which a tap
-                                    ///< counts for nothing; 0 = any
+    FilterKernel filterKernel = FilterKernel::Separable;  ///< filter: the taps of one iteration
+    FilterWeights filterWeights = FilterWeights::Plane;   ///< filter: what tells it that a tap is another surface's
+    float filterDepth = 0.25f;  ///< [0.001; 1000] - plane: m off the plane a m aside, measured across the view, where
+                                ///< history is 8 frames or longer; 8 / length times as much where it is shorter, and
+                                ///< so 8 times without accumulate; depth: m a step
+    float filterNormal = 0.3f;  ///< [0.001; 1000] - squared difference of unit normals at which a tap counts for
+                                ///< nothing (plane) or 1/e (depth)
+    float filterLuminance = 0.0f;  ///< [0; 1000] (standard deviations, about) - plane weights only: luminance
+                                   ///< difference at which a tap counts for nothing; 0 = any. Keeps contrast that no
+                                   ///< surface shows, and takes light away where few samples are bright (5 % at 8)
     float filterFade = 1024.0f;     ///< [1; 1024] (frames) - history longer than this weakens the filter in proportion,
-                                    ///< and a step twice as wide from half of it on
+                                    ///< and a step twice as wide from half of it on; an iteration that counts for less
+                                    ///< than a tenth is left out
     int feedback = 0;               ///< [0; 7] - accumulate: history remembers what this many filter iterations make
     float shadowBiasTexels = 0.5f;  ///< [0; 16] (shadow map texels) - depth bias, constant part
-    float shadowSlopeBiasTexels = 1.5f;  ///< [0; 16] (shadow map texels) - depth bias a unit of slope
-    ToneCurve toneCurve = ToneCurve::Filmic;
-    bool autoExposure = true;    ///< the log-average luminance of the picture becomes mid-grey (0.18)
+    float shadowSlopeBiasTexels = 1.5f;       ///< [0; 16] (shadow map texels) - depth bias a unit of slope
+    ToneCurve toneCurve = ToneCurve::Filmic;  ///< to the display
+    bool autoExposure = true;                 ///< the log-average luminance of the picture becomes mid-grey (0.18)
     float exposureStops = 0.0f;  ///< [-32; 32] (stops) - times 2^x, on top of automatic exposure if that is on
 };
 
@@ -142,7 +151,7 @@ void forEachSetting(SettingsT& s, Visitor&& visit) {
     visit(SettingInfo{"rsm-minify", "RSM texels a side", 1, 8,
                       "blocks of this many (1, 2, 4 or 8) become one texel of their summed flux"},
           s.rsmMinify);
-    visit(SettingInfo{"divisor", "", 1, 4, "indirect light at 1/N (1, 2 or 4) of width and height"}, s.divisor);
+    visit(SettingInfo{"divisor", "", 1, 4, "indirect light at 1/N of width and height: 1, 2 or 4"}, s.divisor);
     visit(SettingInfo{"upsampling", "", 0, 1,
                       "divisor > 1: mean of neighbours on the surface, or interpolate and gather the rest",
                       kUpsamplingNames},
@@ -189,9 +198,9 @@ void forEachSetting(SettingsT& s, Visitor&& visit) {
 /// Settings that go together; what a caller changes afterwards stays changed.
 enum class Preset {
     Still,     ///< Settings(): one picture from many samples, no denoiser
-    Fast,      ///< the least work that looks clean in motion
-    Balanced,  ///< 8 samples, history and filter
-    High,      ///< more samples, a narrower filter
+    Fast,      ///< 2 samples and the cheapest kernel of the filter
+    Balanced,  ///< 8 samples, history of 32 frames, four iterations of the filter
+    High,      ///< 16 samples, history of 64 frames
     Baseline,  ///< the published technique's numbers (8 samples of a disk of 0.2, metres for depth, five iterations
                ///< whatever the history), to measure the others against
 };

@@ -32,7 +32,8 @@ struct FrameReport {
     std::vector<std::filesystem::path> outputs;
 };
 
-/// Puts its keys into `report`: device, settings, frames, stages, steps, exposure, gatheredPixels,
+/// Puts its keys into `report`: device, settings, frames, stages, steps, transportCost (of frames that came from
+/// OpenGL), exposure, gatheredPixels,
 /// nonFinite, outputs.
 void addFrame(nlohmann::ordered_json& report, const FrameReport& frame);
 

@@ -119,13 +119,15 @@ INSTANTIATE_TEST_SUITE_P(All, GlSharingFrames, ::testing::ValuesIn(variants()),
 TEST_F(GlSharing, ResizedFramesAreSharedAnew) {
     // GL gives names of deleted textures out again: what stood for the old ones must be gone.
     const Extent extents[] = {kSmall, kLarge, kSmall, kLarge};
-    BoxRun host(*context, device(), {}, "host"), shared(*context, device(), {}, "gl-sharing");
-    for (int i = 0; i < 4; ++i) {
-        // Two renderers with one storage in the context: each run sets its own before it draws.
-        context->setTextureStorage(&host.opened.transport);
-        const auto expected = host.frame(extents[i], i);
-        context->setTextureStorage(&shared.opened.transport);
-        test::expectSame(shared.frame(extents[i], i), expected);
+    {
+        BoxRun host(*context, device(), {}, "host"), shared(*context, device(), {}, "gl-sharing");
+        for (int i = 0; i < 4; ++i) {
+            // Two renderers with one storage in the context: each run sets its own before it draws.
+            context->setTextureStorage(&host.opened.transport);
+            const auto expected = host.frame(extents[i], i);
+            context->setTextureStorage(&shared.opened.transport);
+            test::expectSame(shared.frame(extents[i], i), expected);
+        }
     }
     EXPECT_THAT(violationsOf(layerLines()), IsEmpty());
     EXPECT_EQ(countOf(layerLines(), "create 61x35"), 2 * 5);
@@ -133,10 +135,12 @@ TEST_F(GlSharing, ResizedFramesAreSharedAnew) {
 }
 
 TEST_F(GlSharing, TexturesThatCameAndWentUnseenAreSharedAnew) {
-    BoxRun run(*context, device(), {}, "gl-sharing");
-    run.frame(kSmall, 0);
-    run.draw(Camera{}, kLarge);
-    run.frame(kSmall, 1);  // the first frame's extent, formats and perhaps names, but other textures
+    {
+        BoxRun run(*context, device(), {}, "gl-sharing");
+        run.frame(kSmall, 0);
+        run.draw(Camera{}, kLarge);
+        run.frame(kSmall, 1);  // the first frame's extent, formats and perhaps names, but other textures
+    }
     EXPECT_THAT(violationsOf(layerLines()), IsEmpty());
     EXPECT_EQ(countOf(layerLines(), "create 61x35"), 2 * 5);
 }

@@ -97,8 +97,8 @@ cl::Image2D GlSharingTransport::share(const GlTexture& texture) {
                             });
 }
 
-void GlSharingTransport::acquire(const std::vector<cl::Image2D>& images, TransportCost& cost) {
-    const std::vector<cl::Memory> objects(images.begin(), images.end());
+void GlSharingTransport::acquire(const std::vector<SharedImage>& images, TransportCost& cost) {
+    const std::vector<cl::Memory> objects = memories(images);
     device().checked("acquiring textures", [&] {
         std::vector<cl::Event> drawn;
         if (createEventFromGlSync_) {
@@ -121,8 +121,8 @@ void GlSharingTransport::acquire(const std::vector<cl::Image2D>& images, Transpo
     });
 }
 
-void GlSharingTransport::release(const std::vector<cl::Image2D>& images, TransportCost& cost) {
-    const std::vector<cl::Memory> objects(images.begin(), images.end());
+void GlSharingTransport::release(const std::vector<SharedImage>& images, TransportCost& cost) {
+    const std::vector<cl::Memory> objects = memories(images);
     device().checked("releasing textures", [&] {
         cost.releaseMs += timedMs([&] {
             cl::Event released;

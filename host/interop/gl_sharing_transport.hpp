@@ -22,8 +22,8 @@ public:
     ~GlSharingTransport() override;
 
     bool allocate(const GlTexture&) override { return false; }
-    void acquire(const std::vector<cl::Image2D>& images, TransportCost& cost) override;
-    void release(const std::vector<cl::Image2D>& images, TransportCost& cost) override;
+    void acquire(const std::vector<SharedImage>& images, TransportCost& cost) override;
+    void release(const std::vector<SharedImage>& images, TransportCost& cost) override;
 
 private:
     cl::Image2D share(const GlTexture& texture) override;

@@ -17,18 +17,25 @@ double timedMs(const std::function<void()>& body) {
 }
 
 SharedTextures::SharedTextures(const char* name, const Device& device, const GlContextHandle& gl)
-    : name_(name), device_(device), api_(name, gl.getProcAddress) {}
+    : device_(device), api_(name, gl.getProcAddress) {}
 
-cl::Image2D SharedTextures::image(const GlTexture& texture) {
+SharedImage SharedTextures::image(const GlTexture& texture) {
     const auto found = shared_.find(texture.name);
     if (found != shared_.end()) {
         const GlTexture& known = found->second.texture;
-        if (known.format == texture.format && known.extent == texture.extent) return found->second.image;
+        if (known.format == texture.format && known.extent == texture.extent)
+            return {texture.name, found->second.image};
         shared_.erase(found);  // its owner gave it other storage and did not say so
     }
     const cl::Image2D image = share(texture);
     shared_[texture.name] = {texture, image};
-    return image;
+    return {texture.name, image};
+}
+
+std::vector<cl::Memory> SharedTextures::memories(const std::vector<SharedImage>& images) {
+    std::vector<cl::Memory> memories;
+    for (const SharedImage& shared : images) memories.push_back(shared.image);
+    return memories;
 }
 
 void SharedTextures::forget(unsigned name) noexcept {
@@ -55,12 +62,12 @@ void SharedTextures::enqueue(const GlFrame& frame, const std::vector<Light>& lig
         pairs.emplace_back(frame.shadowDepth, &out.shadowDepth);
     }
     if (!import_) import_.emplace(device_);
-    std::vector<cl::Image2D> images;
+    std::vector<SharedImage> images;
     for (const auto& [texture, surface] : pairs) images.push_back(image(texture));
 
     acquire(images, cost);
     try {
-        for (std::size_t i = 0; i < pairs.size(); ++i) import_->enqueue(images[i], *pairs[i].second);
+        for (std::size_t i = 0; i < pairs.size(); ++i) import_->enqueue(images[i].image, *pairs[i].second);
     } catch (...) {
         try {
             release(images, cost);      // GL gets its textures back whatever happens

@@ -15,6 +15,12 @@
 
 namespace earthshine {
 
+/// One texture, seen from both sides.
+struct SharedImage {
+    unsigned texture = 0;
+    cl::Image2D image;
+};
+
 /// Textures of the current GL context as images of a device. Thread-compatible; the context must be current.
 class SharedTextures : public GlTextureStorage {
 public:
@@ -25,11 +31,11 @@ public:
 
     /// What one exchange holds: between these two OpenCL may touch the images, and GL may not touch the textures.
     /// Every image comes from image(). Costs are added up.
-    virtual void acquire(const std::vector<cl::Image2D>& images, TransportCost& cost) = 0;
-    virtual void release(const std::vector<cl::Image2D>& images, TransportCost& cost) = 0;
+    virtual void acquire(const std::vector<SharedImage>& images, TransportCost& cost) = 0;
+    virtual void release(const std::vector<SharedImage>& images, TransportCost& cost) = 0;
 
     /// The image that stands for a texture; made when first asked for, and kept until forget().
-    cl::Image2D image(const GlTexture& texture);
+    SharedImage image(const GlTexture& texture);
 
     /// Enqueues everything that brings the textures of `frame` into `surfaces`, and hands the textures back.
     void enqueue(const GlFrame& frame, const std::vector<Light>& lights, FrameSurfaces& surfaces, TransportCost& cost);
@@ -39,17 +45,17 @@ public:
 protected:
     virtual cl::Image2D share(const GlTexture& texture) = 0;
     Device::Impl& device() const { return device_.impl(); }
-    const char* name() const { return name_; }
+    /// The images alone, as OpenCL takes them.
+    static std::vector<cl::Memory> memories(const std::vector<SharedImage>& images);
 
 private:
-    struct Shared {
+    struct Known {
         GlTexture texture;
         cl::Image2D image;
     };
-    const char* name_;
     Device device_;
     GlApi api_;
-    std::map<unsigned, Shared> shared_;
+    std::map<unsigned, Known> shared_;
     std::optional<ImportImageStage> import_;  ///< built by the first frame: a probe needs none
 };
 

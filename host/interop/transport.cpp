@@ -12,6 +12,7 @@
 
 #include "earthshine/error.hpp"
 #include "earthshine/log.hpp"
+#include "interop/external_memory_transport.hpp"
 #include "interop/gl_sharing_transport.hpp"
 #include "interop/transport_impl.hpp"
 
@@ -85,7 +86,7 @@ void exchange(SharedTextures& shared, Device::Impl& device, std::vector<Pattern>
     const GlApi& api = shared.api();
     constexpr auto kWidth = std::size_t(Pattern::kExtent.widthPx), kHeight = std::size_t(Pattern::kExtent.heightPx);
     constexpr double kPatienceS = 10.0;  // a driver whose semaphores go nowhere must not hang the program
-    std::vector<cl::Image2D> images;
+    std::vector<SharedImage> images;
     {
         const GlPixelState state(api);
         for (Pattern& pattern : patterns) {
@@ -112,9 +113,9 @@ void exchange(SharedTextures& shared, Device::Impl& device, std::vector<Pattern>
         cl::Event last;
         for (std::size_t i = 0; i < patterns.size(); ++i) {
             arrived.emplace_back(patterns[i].texture.format, Pattern::kExtent);
-            device.queue.enqueueReadImage(images[i], CL_FALSE, {0, 0, 0}, {kWidth, kHeight, 1}, 0, 0,
+            device.queue.enqueueReadImage(images[i].image, CL_FALSE, {0, 0, 0}, {kWidth, kHeight, 1}, 0, 0,
                                           arrived[i].data());
-            device.queue.enqueueWriteImage(images[i], CL_FALSE, {0, 0, 0}, {kWidth, kHeight, 1}, 0, 0,
+            device.queue.enqueueWriteImage(images[i].image, CL_FALSE, {0, 0, 0}, {kWidth, kHeight, 1}, 0, 0,
                                            patterns[i].fromCl.data(), nullptr, &last);
         }
         device.queue.flush();
@@ -171,10 +172,12 @@ struct Opened {
 
 /// Throws DeviceError with one line that says why this device and this context do not go together in this way.
 Opened openShared(TransportKind kind, const Device& plain, const DeviceOptions& options, const GlContextHandle& gl) {
-    if (kind == TransportKind::ExternalMemory)
-        throw DeviceError(fmt::format("no cl_khr_external_memory_opaque_fd on \"{}\"", plain.caps().name));
-    Opened opened{openWithGlSharing(plain, options, gl), nullptr};
-    opened.shared = std::make_unique<GlSharingTransport>(opened.device, gl);
+    const bool isGlSharing = kind == TransportKind::GlSharing;
+    Opened opened{isGlSharing ? openWithGlSharing(plain, options, gl) : plain, nullptr};
+    if (isGlSharing)
+        opened.shared = std::make_unique<GlSharingTransport>(opened.device, gl);
+    else
+        opened.shared = std::make_unique<ExternalMemoryTransport>(opened.device, gl);
     probe(*opened.shared, opened.device);
     return opened;
 }

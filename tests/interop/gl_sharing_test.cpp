@@ -259,7 +259,8 @@ protected:
         gl.BindTexture(GL_TEXTURE_2D, texture.name);
         gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
         upload(1.0f);
-        image = shared->image(texture);
+        both = shared->image(texture);
+        image = both.image;
     }
     void upload(float value) const {
         const std::vector<float> pixels(4 * 4 * 4, value);
@@ -280,18 +281,19 @@ protected:
     Device opened;
     std::unique_ptr<GlSharingTransport> shared;
     GlTexture texture{0, PixelFormat::RGBA32F, {4, 4}};
-    cl::Image2D image;
+    SharedImage both;
+    cl::Image2D image;  ///< of both
     TransportCost cost;
 };
 
 TEST_F(GlSharingRules, KeptTheyGiveThePixels) {
-    shared->acquire({image}, cost);
+    shared->acquire({both}, cost);
     EXPECT_EQ(read(), 1.0f);
-    shared->release({image}, cost);
+    shared->release({both}, cost);
     upload(2.0f);
-    shared->acquire({image}, cost);
+    shared->acquire({both}, cost);
     EXPECT_EQ(read(), 2.0f);
-    shared->release({image}, cost);
+    shared->release({both}, cost);
     EXPECT_THAT(violationsOf(layerLines()), IsEmpty());
 }
 TEST_F(GlSharingRules, UseBeforeAcquire) {
@@ -299,47 +301,49 @@ TEST_F(GlSharingRules, UseBeforeAcquire) {
     expectViolation("reading of texture");
 }
 TEST_F(GlSharingRules, KernelAfterRelease) {
-    shared->acquire({image}, cost);
+    shared->acquire({both}, cost);
     ImportImageStage import(opened);
     const Surface surface(opened, PixelFormat::RGBA32F, {4, 4});
     import.enqueue(image, surface);
-    shared->release({image}, cost);
+    shared->release({both}, cost);
     EXPECT_THAT(deviceErrorOf([&] { import.enqueue(image, surface); }), HasSubstr("import_image: launching"));
     expectViolation("a kernel's use of texture");
 }
 TEST_F(GlSharingRules, DrawingWhileAcquired) {
-    shared->acquire({image}, cost);
+    shared->acquire({both}, cost);
     upload(2.0f);
-    deviceErrorOf([&] { shared->release({image}, cost); });
+    deviceErrorOf([&] { shared->release({both}, cost); });
     expectViolation("GL touched texture");
 }
 TEST_F(GlSharingRules, AcquireTwice) {
-    shared->acquire({image}, cost);
-    deviceErrorOf([&] { shared->acquire({image}, cost); });
+    shared->acquire({both}, cost);
+    deviceErrorOf([&] { shared->acquire({both}, cost); });
     expectViolation("which is acquired already");
 }
 TEST_F(GlSharingRules, ReleaseTwice) {
-    shared->acquire({image}, cost);
-    shared->release({image}, cost);
-    deviceErrorOf([&] { shared->release({image}, cost); });
+    shared->acquire({both}, cost);
+    shared->release({both}, cost);
+    deviceErrorOf([&] { shared->release({both}, cost); });
     expectViolation("which is not acquired");
 }
 TEST_F(GlSharingRules, AnotherGlContext) {
     const auto other = raster::createContext("egl");
-    deviceErrorOf([&] { shared->acquire({image}, cost); });
+    deviceErrorOf([&] { shared->acquire({both}, cost); });
     context->makeCurrent();
     expectViolation("acquire without its GL context");
 }
 TEST_F(GlSharingRules, LettingGoWhileAcquired) {
-    shared->acquire({image}, cost);
+    shared->acquire({both}, cost);
     shared->forget(texture.name);
     image = {};
+    both = {};
     expectViolation("is let go while it is acquired");
 }
 TEST_F(GlSharingRules, DeletingATextureBeforeItsImage) {
     context->gl().DeleteTextures(1, &texture.name);
     shared->forget(texture.name);
     image = {};
+    both = {};
     expectViolation("was deleted before its image");
 }
 TEST_F(GlSharingRules, AnotherQueue) {

@@ -35,7 +35,7 @@ TemporalParams temporalParams(const Settings& settings, const FrameGeometry& fra
     TemporalParams p{};
     p.previousRays = frame.previousRays;
     p.hasHistory = settings.accumulates && frame.hasHistory ? 1 : 0;
-    p.usesConfidence = settings.antiLag > 0.0f && frame.hasConfidence ? 1 : 0;
+    p.usesConfidence = settings.antiLag > 0.0f && frame.hasHistory && frame.hasConfidence ? 1 : 0;
     p.maxFrames = float(settings.historyFrames);
     p.planeTolerance = kPlaneTolerance;
     p.minNormalCosine = kMinNormalCosine;

@@ -15,63 +15,14 @@
 //   EARTHSHINE_LAYER_FAIL=CALL:N   the N-th create, acquire or release is refused as if the device were out of
 //   resources EARTHSHINE_LAYER_DEVICE=none   no device goes along with the GL context
 
-#define CL_TARGET_OPENCL_VERSION 300
-#define CL_USE_DEPRECATED_OPENCL_1_1_APIS
-#define CL_USE_DEPRECATED_OPENCL_1_2_APIS
-#define EGL_NO_PLATFORM_SPECIFIC_TYPES
-#include <CL/cl.h>
-#include <CL/cl_gl.h>
-#include <CL/cl_layer.h>
-#include <EGL/egl.h>
-#include <GL/glcorearb.h>
-#include <dlfcn.h>
-
-#include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <map>
-#include <string>
-#include <utility>
-#include <vector>
+#include "interop/layer_support.hpp"
 
 namespace {
 
+using namespace layer_support;
+
 cl_icd_dispatch target;  ///< what lies below
 cl_icd_dispatch layer;   ///< the same, with ours in place of some
-
-/// What the layer needs of GL. The program opens libEGL itself and keeps it local.
-struct Gl {
-    void* library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
-    EGLContext (*getCurrentContext)() = egl<EGLContext (*)()>("eglGetCurrentContext");
-    EGLDisplay (*getCurrentDisplay)() = egl<EGLDisplay (*)()>("eglGetCurrentDisplay");
-    void* (*getProcAddress)(const char*) = egl<void* (*)(const char*)>("eglGetProcAddress");
-    PFNGLGETINTEGERVPROC getIntegerv = gl<PFNGLGETINTEGERVPROC>("glGetIntegerv");
-    PFNGLBINDTEXTUREPROC bindTexture = gl<PFNGLBINDTEXTUREPROC>("glBindTexture");
-    PFNGLBINDBUFFERPROC bindBuffer = gl<PFNGLBINDBUFFERPROC>("glBindBuffer");
-    PFNGLGETTEXIMAGEPROC getTexImage = gl<PFNGLGETTEXIMAGEPROC>("glGetTexImage");
-    PFNGLTEXSUBIMAGE2DPROC texSubImage2D = gl<PFNGLTEXSUBIMAGE2DPROC>("glTexSubImage2D");
-    PFNGLGETTEXLEVELPARAMETERIVPROC getTexLevelParameteriv =
-        gl<PFNGLGETTEXLEVELPARAMETERIVPROC>("glGetTexLevelParameteriv");
-    PFNGLTEXPARAMETERFVPROC texParameterfv = gl<PFNGLTEXPARAMETERFVPROC>("glTexParameterfv");
-    PFNGLGETTEXPARAMETERFVPROC getTexParameterfv = gl<PFNGLGETTEXPARAMETERFVPROC>("glGetTexParameterfv");
-    PFNGLISTEXTUREPROC isTexture = gl<PFNGLISTEXTUREPROC>("glIsTexture");
-    PFNGLCLIENTWAITSYNCPROC clientWaitSync = gl<PFNGLCLIENTWAITSYNCPROC>("glClientWaitSync");
-
-private:
-    template <class Function>
-    Function egl(const char* name) const {
-        return reinterpret_cast<Function>(dlsym(library, name));
-    }
-    template <class Function>
-    Function gl(const char* name) const {
-        return reinterpret_cast<Function>(getProcAddress(name));
-    }
-};
-const Gl& gl() {
-    static const Gl functions;
-    return functions;
-}
 
 struct SharedImage {
     cl_context context;
@@ -93,61 +44,12 @@ struct SharingContext {
 std::map<cl_mem, SharedImage> images;
 std::map<cl_context, SharingContext> contexts;
 std::map<std::pair<cl_kernel, cl_uint>, cl_mem> kernelImages;
-std::map<std::string, int> callCounts;
-
-std::string environment(const char* name) {
-    const char* value = std::getenv(name);
-    return value ? value : "";
-}
-
-void note(const std::string& line) {
-    const std::string path = environment("EARTHSHINE_LAYER_LOG");
-    std::FILE* file = path.empty() ? nullptr : std::fopen(path.c_str(), "a");
-    if (!file) return;
-    std::fprintf(file, "%s\n", line.c_str());
-    std::fclose(file);
-}
-
-cl_int violation(const std::string& rule) {
-    note("violation: " + rule);
-    return CL_INVALID_OPERATION;
-}
-
-/// Is this the call that the test wants to fail?
-bool fails(const char* call) {
-    static std::string counted;
-    if (std::exchange(counted, environment("EARTHSHINE_LAYER_FAIL")) != counted) callCounts.clear();
-    return environment("EARTHSHINE_LAYER_FAIL") == std::string(call) + ":" + std::to_string(++callCounts[call]);
-}
 
 bool isCurrent(cl_context context) {
     const auto found = contexts.find(context);
     return found != contexts.end() && gl().getCurrentContext() == found->second.glContext &&
            gl().getCurrentDisplay() == found->second.display;
 }
-
-/// Pixels of the bound texture go to and from plain rows; what was bound is bound again at the end.
-class Bound {
-public:
-    explicit Bound(GLuint texture) {
-        gl().getIntegerv(GL_TEXTURE_BINDING_2D, &texture_);
-        gl().getIntegerv(GL_PIXEL_PACK_BUFFER_BINDING, &pack_);
-        gl().getIntegerv(GL_PIXEL_UNPACK_BUFFER_BINDING, &unpack_);
-        gl().bindTexture(GL_TEXTURE_2D, texture);
-        gl().bindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-        gl().bindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
-    }
-    ~Bound() {
-        gl().bindTexture(GL_TEXTURE_2D, GLuint(texture_));
-        gl().bindBuffer(GL_PIXEL_PACK_BUFFER, GLuint(pack_));
-        gl().bindBuffer(GL_PIXEL_UNPACK_BUFFER, GLuint(unpack_));
-    }
-    Bound(const Bound&) = delete;
-    Bound& operator=(const Bound&) = delete;
-
-private:
-    GLint texture_ = 0, pack_ = 0, unpack_ = 0;
-};
 
 float markOf(const SharedImage& image) {
     float color[4] = {};
@@ -183,17 +85,9 @@ cl_int use(cl_mem mem, const char* call) {
 cl_int CL_API_CALL getDeviceInfo(cl_device_id device, cl_device_info name, std::size_t size, void* value,
                                  std::size_t* sizeOut) {
     if (name != CL_DEVICE_EXTENSIONS) return target.clGetDeviceInfo(device, name, size, value, sizeOut);
-    std::size_t bytes = 0;
-    if (const cl_int code = target.clGetDeviceInfo(device, name, 0, nullptr, &bytes); code != CL_SUCCESS) return code;
-    std::string text(bytes, '\0');
-    target.clGetDeviceInfo(device, name, bytes, text.data(), nullptr);
-    text.resize(std::strlen(text.c_str()));
-    text += " cl_khr_gl_sharing";
-    if (environment("EARTHSHINE_LAYER_EVENTS") == "1") text += " cl_khr_gl_event";
-    if (sizeOut) *sizeOut = text.size() + 1;
-    if (value && size < text.size() + 1) return CL_INVALID_VALUE;
-    if (value) std::memcpy(value, text.c_str(), text.size() + 1);
-    return CL_SUCCESS;
+    std::string more = " cl_khr_gl_sharing";
+    if (environment("EARTHSHINE_LAYER_EVENTS") == "1") more += " cl_khr_gl_event";
+    return extensionsWith(target, more, device, size, value, sizeOut);
 }
 
 /// Takes the sharing properties out.
@@ -464,15 +358,7 @@ cl_int CL_API_CALL copyImage(cl_command_queue queue, cl_mem from, cl_mem to, con
 
 CL_API_ENTRY cl_int CL_API_CALL clGetLayerInfo(cl_layer_info name, std::size_t size, void* value,
                                                std::size_t* sizeOut) {
-    const cl_layer_api_version version = CL_LAYER_API_VERSION_100;
-    constexpr char kName[] = "gl_sharing by copies";
-    const void* from = name == CL_LAYER_API_VERSION ? static_cast<const void*>(&version) : kName;
-    const std::size_t bytes = name == CL_LAYER_API_VERSION ? sizeof version : sizeof kName;
-    if (name != CL_LAYER_API_VERSION && name != CL_LAYER_NAME) return CL_INVALID_VALUE;
-    if (sizeOut) *sizeOut = bytes;
-    if (value && size < bytes) return CL_INVALID_VALUE;
-    if (value) std::memcpy(value, from, bytes);
-    return CL_SUCCESS;
+    return layerInfo("gl_sharing by copies", name, size, value, sizeOut);
 }
 
 CL_API_ENTRY cl_int CL_API_CALL clInitLayer(cl_uint count, const cl_icd_dispatch* below, cl_uint* countOut,

@@ -42,15 +42,20 @@ GlFrame BoxRun::draw(const Camera& camera, Extent extent) {
                             {extent, 48, 80, glm::vec3(0.5f, 1.0f, 2.0f)});
 }
 
-std::vector<std::byte> BoxRun::frame(Extent extent, int index) {
+void BoxRun::compute(Extent extent, int index) {
     const Camera camera = raster::test::lookAtCamera({-2.0 + 0.05 * index, 0.5, 2.5}, {0.3, -0.8, -0.5}, extent, 1.1);
     if (index == 0) previous_ = camera;
     const GlFrame drawn = draw(camera, extent);
     Settings settings;
+    settings.sampleCount = 8;
     settings.accumulates = true;
     settings.filterIterations = 2;
     pipeline_.setFrame(opened.transport, drawn, camera, boxLights());
     pipeline_.run(settings);
+}
+
+std::vector<std::byte> BoxRun::frame(Extent extent, int index) {
+    compute(extent, index);
     std::vector<std::byte> bytes;
     for (const Output output : {Output::DirectIrradiance, Output::IndirectIrradiance, Output::Color, Output::Display}) {
         const HostImage image = pipeline_.read(output);

@@ -32,6 +32,9 @@ public:
     /// Draws a frame from a camera that stands elsewhere in every frame, and returns the pixels of every output.
     std::vector<std::byte> frame(Extent extent, int index);
 
+    /// The same, and leaves the outputs on the device.
+    void compute(Extent extent, int index);
+
     /// Draws and computes nothing.
     GlFrame draw(const Camera& camera, Extent extent);
 

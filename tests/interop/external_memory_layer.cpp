@@ -17,7 +17,7 @@ cl_icd_dispatch target;
 cl_icd_dispatch layer;
 
 struct SharedImage {
-    test::ExternalObject* memory;
+    test::Imported memory;
     std::size_t width, height, bytesPerPixel;
     GLenum format, type;
     bool isAcquired = false;
@@ -30,7 +30,7 @@ bool hasWaited = false;                      ///< since the last signal
 
 std::vector<std::uint8_t> texturePixels(const SharedImage& image) {
     std::vector<std::uint8_t> pixels(image.width * image.height * image.bytesPerPixel);
-    const Bound bound(image.memory->texture);
+    const Bound bound(image.memory.object->texture);
     gl().getTexImage(GL_TEXTURE_2D, 0, image.format, image.type, pixels.data());
     return pixels;
 }
@@ -85,7 +85,7 @@ cl_mem CL_API_CALL createImageWithProperties(cl_context context, const cl_mem_pr
                       GLenum(isHalf ? GL_HALF_FLOAT : GL_FLOAT),
                       false,
                       {}};
-    if (!image.memory) {
+    if (!image.memory.object) {
         *codeOut = CL_INVALID_VALUE;
         return nullptr;
     }
@@ -103,7 +103,8 @@ cl_int CL_API_CALL releaseMemObject(cl_mem mem) {
         target.clGetMemObjectInfo(mem, CL_MEM_REFERENCE_COUNT, sizeof references, &references, nullptr) == CL_SUCCESS &&
         references == 1) {
         if (found->second.isAcquired) violation("an image is let go while it is acquired");
-        if (!gl().isTexture(found->second.memory->texture)) violation("a texture was deleted before its image");
+        if (!gl().isTexture(found->second.memory.object->texture)) violation("a texture was deleted before its image");
+        if (!test::letGo(found->second.memory)) violation("an image's descriptor was closed by another than OpenCL");
         note("let go");
         images.erase(found);
     }
@@ -121,9 +122,15 @@ cl_semaphore_khr CL_API_CALL createSemaphore(cl_context, const cl_semaphore_prop
         *codeOut = CL_INVALID_PROPERTY;
         return nullptr;
     }
-    return reinterpret_cast<cl_semaphore_khr>(test::importObject(int(p[3])));
+    return reinterpret_cast<cl_semaphore_khr>(new test::Imported(test::importObject(int(p[3]))));
 }
-cl_int CL_API_CALL releaseSemaphore(cl_semaphore_khr) {
+test::ExternalObject* objectOf(cl_semaphore_khr semaphore) {
+    return reinterpret_cast<test::Imported*>(semaphore)->object;
+}
+cl_int CL_API_CALL releaseSemaphore(cl_semaphore_khr semaphore) {
+    auto* imported = reinterpret_cast<test::Imported*>(semaphore);
+    if (!test::letGo(*imported)) violation("a semaphore's descriptor was closed by another than OpenCL");
+    delete imported;
     note("semaphore let go");
     return CL_SUCCESS;
 }
@@ -132,7 +139,7 @@ cl_int CL_API_CALL waitSemaphores(cl_command_queue, cl_uint count, const cl_sema
                                   const cl_semaphore_payload_khr*, cl_uint, const cl_event*, cl_event*) {
     if (fails("wait")) return CL_OUT_OF_RESOURCES;
     for (cl_uint i = 0; i < count; ++i) {
-        auto* semaphore = reinterpret_cast<test::ExternalObject*>(semaphores[i]);
+        test::ExternalObject* semaphore = objectOf(semaphores[i]);
         if (!semaphore->isSignalled)
             return violation(semaphore->isPending ? "OpenCL waits for what OpenGL did not flush"
                                                   : "OpenCL waits for what OpenGL did not signal");
@@ -147,7 +154,7 @@ cl_int CL_API_CALL signalSemaphores(cl_command_queue, cl_uint count, const cl_se
     for (const auto& [mem, image] : images)
         if (image.isAcquired) return violation("OpenCL signals while an image is acquired");
     for (cl_uint i = 0; i < count; ++i) {
-        auto* semaphore = reinterpret_cast<test::ExternalObject*>(semaphores[i]);
+        test::ExternalObject* semaphore = objectOf(semaphores[i]);
         if (semaphore->isSignalled || semaphore->isPending) return violation("OpenCL signals twice");
         semaphore->isPending = 1;
         pending.push_back(semaphore);
@@ -165,7 +172,7 @@ cl_int CL_API_CALL acquire(cl_command_queue queue, cl_uint count, const cl_mem* 
         if (found == images.end()) return violation("acquire of what is not external");
         SharedImage& image = found->second;
         if (image.isAcquired) return violation("acquire of what is acquired already");
-        if (image.memory->texture == 0) return violation("acquire of memory that is no texture yet");
+        if (image.memory.object->texture == 0) return violation("acquire of memory that is no texture yet");
         image.asAcquired = texturePixels(image);
         const std::size_t origin[3] = {0, 0, 0}, region[3] = {image.width, image.height, 1};
         const cl_int code = target.clEnqueueWriteImage(queue, mems[i], CL_TRUE, origin, region, 0, 0,
@@ -188,7 +195,7 @@ cl_int CL_API_CALL release(cl_command_queue queue, cl_uint count, const cl_mem* 
         const std::size_t origin[3] = {0, 0, 0}, region[3] = {image.width, image.height, 1};
         target.clEnqueueReadImage(queue, mems[i], CL_TRUE, origin, region, 0, 0, pixels.data(), 0, nullptr, nullptr);
         {
-            const Bound bound(image.memory->texture);
+            const Bound bound(image.memory.object->texture);
             gl().texSubImage2D(GL_TEXTURE_2D, 0, 0, 0, GLsizei(image.width), GLsizei(image.height), image.format,
                                image.type, pixels.data());
         }

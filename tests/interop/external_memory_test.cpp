@@ -115,7 +115,9 @@ TEST_P(ExternalMemoryFrames, AreThoseOfHostBitForBit) {
     EXPECT_EQ(count("vk make memory"), 3 + 9 + 5 + 5);  // the probe's, a frame's, and five anew for each size
     EXPECT_EQ(count("semaphore let go"), 2);
     expectNothingLeft();
-    EXPECT_EQ(openFiles(), filesBefore);
+    const auto kept = count("import") - count("let go");
+    EXPECT_LE(kept, 1) << "a driver may keep the image that a kernel's argument named last";
+    EXPECT_EQ(openFiles(), filesBefore + kept);
 }
 
 std::vector<reference::Variant> variants() {

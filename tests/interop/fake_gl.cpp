@@ -20,13 +20,13 @@ constexpr GLenum kHandleTypeOpaqueFd = 0x9586, kDedicated = 0x9581, kLayoutGener
 
 struct Memory {
     bool isDedicated = false;
-    ExternalObject* object = nullptr;
+    ::test::Imported memory;
     GLuint texture = 0;
 };
 
 GlGetProcAddress find;
 std::map<unsigned, Memory> memories;
-std::map<unsigned, ExternalObject*> semaphores;
+std::map<unsigned, ::test::Imported> semaphores;
 unsigned lastName = 0;
 std::vector<ExternalObject*> pending;
 GLenum error = GL_NO_ERROR;
@@ -86,6 +86,8 @@ void deleteMemoryObjects(GLsizei count, const GLuint* names) {
     for (GLsizei i = 0; i < count; ++i) {
         const GLuint texture = memories[names[i]].texture;
         if (texture != 0 && gl().isTexture(texture)) violation("a memory object is deleted before its texture");
+        if (memories[names[i]].memory.object && !::test::letGo(memories[names[i]].memory))
+            violation("a memory's descriptor was closed by another than OpenGL");
         if (memories.erase(names[i]) == 0) violation("a memory object is deleted that is none");
         note("gl memory deleted");
     }
@@ -100,26 +102,29 @@ void importMemoryFd(GLuint name, GLuint64 size, GLenum type, GLint fd) {
     }
     if (type != kHandleTypeOpaqueFd || size == 0) violation("glImportMemoryFdEXT's arguments");
     if (!memories[name].isDedicated) violation("memory of an image was not said to be dedicated");
-    memories[name].object = ::test::importObject(fd);
+    memories[name].memory = ::test::importObject(fd);
 }
 void texStorageMem2D(GLenum target, GLsizei levels, GLenum format, GLsizei width, GLsizei height, GLuint name,
                      GLuint64 offset) {
-    if (fails("glTexStorageMem2DEXT") || !memories[name].object || offset != 0) {
+    if (fails("glTexStorageMem2DEXT") || !memories[name].memory.object || offset != 0) {
         error = GL_INVALID_VALUE;
         return;
     }
     GLint texture = 0;
     real<PFNGLGETINTEGERVPROC>("glGetIntegerv")(GL_TEXTURE_BINDING_2D, &texture);
     real<PFNGLTEXSTORAGE2DPROC>("glTexStorage2D")(target, levels, format, width, height);
-    memories[name].texture = memories[name].object->texture = GLuint(texture);
+    memories[name].texture = memories[name].memory.object->texture = GLuint(texture);
 }
 
 void genSemaphores(GLsizei count, GLuint* names) {
-    for (GLsizei i = 0; i < count; ++i) semaphores[names[i] = ++lastName] = nullptr;
+    for (GLsizei i = 0; i < count; ++i) semaphores[names[i] = ++lastName] = {};
 }
 void deleteSemaphores(GLsizei count, const GLuint* names) {
-    for (GLsizei i = 0; i < count; ++i)
-        if (semaphores.erase(names[i]) == 0) violation("a semaphore is deleted that is none");
+    for (GLsizei i = 0; i < count; ++i) {
+        if (semaphores[names[i]].object && !::test::letGo(semaphores[names[i]]))
+            violation("a semaphore's descriptor was closed by another than OpenGL");
+        semaphores.erase(names[i]);
+    }
 }
 void importSemaphoreFd(GLuint name, GLenum type, GLint fd) {
     if (fails("glImportSemaphoreFdEXT")) {
@@ -139,14 +144,14 @@ void checkBarrier(GLuint count, const GLuint* textures, const GLenum* layouts) {
 }
 void signalSemaphore(GLuint name, GLuint, const GLuint*, GLuint count, const GLuint* textures, const GLenum* layouts) {
     checkBarrier(count, textures, layouts);
-    ExternalObject* object = semaphores[name];
+    ExternalObject* object = semaphores[name].object;
     if (object->isSignalled || object->isPending) violation("OpenGL signals twice");
     object->isPending = 1;
     pending.push_back(object);
 }
 void waitSemaphore(GLuint name, GLuint, const GLuint*, GLuint count, const GLuint* textures, const GLenum* layouts) {
     checkBarrier(count, textures, layouts);
-    ExternalObject* object = semaphores[name];
+    ExternalObject* object = semaphores[name].object;
     if (!object->isSignalled)
         violation(object->isPending ? "OpenGL waits for what OpenCL did not flush"
                                     : "OpenGL waits for what OpenCL did not signal");

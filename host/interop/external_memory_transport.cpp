@@ -66,7 +66,10 @@ void ExternalMemoryTransport::loadCl() {
     extension(cl_.acquireMemory, "clEnqueueAcquireExternalMemObjectsKHR");
     extension(cl_.releaseMemory, "clEnqueueReleaseExternalMemObjectsKHR");
     extension(cl_.createSemaphore, "clCreateSemaphoreWithPropertiesKHR");
-    extension(cl_.releaseSemaphore, "clReleaseSemaphoreKHR");
+    // Drafts of the extension, and drivers of their time, have another name for it.
+    const char* releaseName = "clReleaseSemaphoreKHR";
+    if (!::clGetExtensionFunctionAddressForPlatform(platform, releaseName)) releaseName = "clReleaseSemaphoreObjectKHR";
+    extension(cl_.releaseSemaphore, releaseName);
     extension(cl_.wait, "clEnqueueWaitSemaphoresKHR");
     extension(cl_.signal, "clEnqueueSignalSemaphoresKHR");
 }
@@ -110,9 +113,15 @@ ExternalMemoryTransport::Semaphore ExternalMemoryTransport::importSemaphore() {
         api().check("glImportSemaphoreFdEXT");
         exported.forGl.disown();
         device().checked("importing a semaphore", [&] {
-            const cl_semaphore_properties_khr properties[] = {CL_SEMAPHORE_TYPE_KHR, CL_SEMAPHORE_TYPE_BINARY_KHR,
+            const auto handle = reinterpret_cast<std::uintptr_t>(device().device());
+            const cl_semaphore_properties_khr properties[] = {CL_SEMAPHORE_TYPE_KHR,
+                                                              CL_SEMAPHORE_TYPE_BINARY_KHR,
                                                               CL_SEMAPHORE_HANDLE_OPAQUE_FD_KHR,
-                                                              cl_semaphore_properties_khr(exported.forCl.get()), 0};
+                                                              cl_semaphore_properties_khr(exported.forCl.get()),
+                                                              CL_DEVICE_HANDLE_LIST_KHR,
+                                                              handle,
+                                                              CL_DEVICE_HANDLE_LIST_END_KHR,
+                                                              0};
             cl_int code = CL_SUCCESS;
             semaphore.cl = cl_.createSemaphore(device().context(), properties, &code);
             checkCl(code, "clCreateSemaphoreWithPropertiesKHR");
@@ -160,23 +169,42 @@ cl::Image2D ExternalMemoryTransport::share(const GlTexture& texture) {
                         "Transport::allocate()",
                         texture.name));
     Fd& fd = found->second.image.forCl;
-    return device().checked(
-        fmt::format("importing a texture of {} x {} {}", texture.extent.widthPx, texture.extent.heightPx,
-                    formatName(texture.format)),
-        [&] {
-            const cl_ulong properties[] = {CL_EXTERNAL_MEMORY_HANDLE_OPAQUE_FD_KHR, cl_ulong(fd.get()), 0};
-            const cl::ImageFormat format = clImageFormat(texture.format);
-            cl_image_desc desc{};
-            desc.image_type = CL_MEM_OBJECT_IMAGE2D;
-            desc.image_width = std::size_t(texture.extent.widthPx);
-            desc.image_height = std::size_t(texture.extent.heightPx);
-            cl_int code = CL_SUCCESS;
-            const cl_mem image = cl_.createImageWithProperties(device().context(), properties, CL_MEM_READ_WRITE,
-                                                               &format, &desc, nullptr, &code);
-            checkCl(code, "clCreateImageWithProperties");
-            fd.disown();
-            return cl::Image2D(image);
-        });
+    const std::string what = fmt::format("importing a texture of {} x {} {}", texture.extent.widthPx,
+                                         texture.extent.heightPx, formatName(texture.format));
+    return device().checked(what, [&] {
+        const cl_mem image = importImage(texture, fd.get());
+        fd.disown();
+        return cl::Image2D(image);
+    });
+}
+
+cl_mem ExternalMemoryTransport::importImage(const GlTexture& texture, int fd) const {
+    const auto handle = reinterpret_cast<std::uintptr_t>(device().device());
+    const cl_ulong properties[] = {CL_EXTERNAL_MEMORY_HANDLE_OPAQUE_FD_KHR,
+                                   cl_ulong(fd),
+                                   CL_DEVICE_HANDLE_LIST_KHR,
+                                   handle,
+                                   CL_DEVICE_HANDLE_LIST_END_KHR,
+                                   0};
+    const cl::ImageFormat format = clImageFormat(texture.format);
+    cl_image_desc desc{};
+    desc.image_type = CL_MEM_OBJECT_IMAGE2D;
+    desc.image_width = std::size_t(texture.extent.widthPx);
+    desc.image_height = std::size_t(texture.extent.heightPx);
+    const auto create = [&](cl_int& code) {
+        return cl_.createImageWithProperties(device().context(), properties, CL_MEM_READ_WRITE, &format, &desc, nullptr,
+                                             &code);
+    };
+    cl_int code = CL_SUCCESS;
+    cl_mem image = create(code);
+    if (code == CL_SUCCESS) return image;
+    // The standard's word for "no mipmaps" is 0, the conformance test's for external images 1: a driver may take that
+    // alone.
+    desc.num_mip_levels = 1;
+    cl_int secondCode = CL_SUCCESS;
+    image = create(secondCode);
+    if (secondCode != CL_SUCCESS) checkCl(code, "clCreateImageWithProperties");
+    return image;
 }
 
 void ExternalMemoryTransport::forget(unsigned name) noexcept {

@@ -71,6 +71,7 @@ private:
     DeviceUuid deviceUuid() const;
     Semaphore importSemaphore();
     cl::Image2D share(const GlTexture& texture) override;
+    cl_mem importImage(const GlTexture& texture, int fd) const;
     void freeRetired() noexcept;
     static Barrier barrierOf(const std::vector<SharedImage>& images);
 

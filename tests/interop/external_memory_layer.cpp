@@ -67,8 +67,17 @@ cl_int CL_API_CALL getDeviceInfo(cl_device_id device, cl_device_info name, std::
 cl_mem CL_API_CALL createImageWithProperties(cl_context context, const cl_mem_properties* properties,
                                              cl_mem_flags flags, const cl_image_format* format,
                                              const cl_image_desc* desc, void* host, cl_int* codeOut) {
-    if (!properties || properties[0] != CL_EXTERNAL_MEMORY_HANDLE_OPAQUE_FD_KHR || properties[2] != 0)
+    if (!properties || properties[0] != CL_EXTERNAL_MEMORY_HANDLE_OPAQUE_FD_KHR)
         return target.clCreateImageWithProperties(context, properties, flags, format, desc, host, codeOut);
+    if (properties[2] != CL_DEVICE_HANDLE_LIST_KHR || properties[4] != CL_DEVICE_HANDLE_LIST_END_KHR ||
+        properties[5] != 0)
+        violation("an external image's properties");
+    // Mipmaps must be said not to be there in the way that a test asks for: 0 or 1.
+    const cl_uint levels = environment("EARTHSHINE_LAYER_DEVICE") == "levels" ? 1 : 0;
+    if (desc->num_mip_levels != levels) {
+        *codeOut = CL_INVALID_IMAGE_DESCRIPTOR;
+        return nullptr;
+    }
     if (fails("import")) {
         *codeOut = CL_OUT_OF_RESOURCES;
         return nullptr;
@@ -89,8 +98,11 @@ cl_mem CL_API_CALL createImageWithProperties(cl_context context, const cl_mem_pr
         *codeOut = CL_INVALID_VALUE;
         return nullptr;
     }
+    cl_image_desc plain = *desc;
+    plain.num_mip_levels = 0;
     std::vector<std::uint8_t> ones(image.width * image.height * image.bytesPerPixel, 0xff);  // NaN
-    const cl_mem mem = target.clCreateImage(context, flags | CL_MEM_COPY_HOST_PTR, format, desc, ones.data(), codeOut);
+    const cl_mem mem =
+        target.clCreateImage(context, flags | CL_MEM_COPY_HOST_PTR, format, &plain, ones.data(), codeOut);
     if (mem) images[mem] = std::move(image);
     if (mem) note("import");
     return mem;
@@ -118,7 +130,8 @@ cl_semaphore_khr CL_API_CALL createSemaphore(cl_context, const cl_semaphore_prop
         return nullptr;
     }
     if (p[0] != CL_SEMAPHORE_TYPE_KHR || p[1] != CL_SEMAPHORE_TYPE_BINARY_KHR ||
-        p[2] != CL_SEMAPHORE_HANDLE_OPAQUE_FD_KHR || p[4] != 0) {
+        p[2] != CL_SEMAPHORE_HANDLE_OPAQUE_FD_KHR || p[4] != CL_DEVICE_HANDLE_LIST_KHR ||
+        p[6] != CL_DEVICE_HANDLE_LIST_END_KHR || p[7] != 0) {
         *codeOut = CL_INVALID_PROPERTY;
         return nullptr;
     }

@@ -192,6 +192,12 @@ TEST_F(ExternalMemory, AnotherDeviceIsNotTaken) {
     expectNothingLeft();
 }
 
+TEST_F(ExternalMemory, ADriverThatWantsOneLevelGetsIt) {
+    set("DEVICE", "levels");
+    EXPECT_EQ(openForGl(device(), {}, gl, "external-memory").transport.kind(), TransportKind::ExternalMemory);
+    EXPECT_THAT(violations(), IsEmpty());
+}
+
 TEST_F(ExternalMemory, AFailureInMidRunGoesOnWithHost) {
     const std::vector<Extent> extents{kSmall, kLarge, kLarge};
     const auto expected = framesOfHost(extents, reference::defaultVariants().at(0));

@@ -39,6 +39,7 @@ struct SharedImage {
 struct SharingContext {
     void* glContext = nullptr;
     void* display = nullptr;
+    bool isGlx = false;
 };
 
 std::map<cl_mem, SharedImage> images;
@@ -96,10 +97,11 @@ SharingContext takeSharing(const cl_context_properties* properties, std::vector<
     for (; properties && properties[0] != 0; properties += 2) {
         if (properties[0] == CL_GL_CONTEXT_KHR)
             sharing.glContext = reinterpret_cast<void*>(properties[1]);
-        else if (properties[0] == CL_EGL_DISPLAY_KHR)
+        else if (properties[0] == CL_EGL_DISPLAY_KHR || properties[0] == CL_GLX_DISPLAY_KHR)
             sharing.display = reinterpret_cast<void*>(properties[1]);
         else
             rest.insert(rest.end(), {properties[0], properties[1]});
+        sharing.isGlx = sharing.isGlx || properties[0] == CL_GLX_DISPLAY_KHR;
     }
     rest.push_back(0);
     return sharing;
@@ -122,7 +124,7 @@ cl_context CL_API_CALL createContext(const cl_context_properties* properties, cl
     contexts.erase(context);
     if (context && sharing.glContext) {
         contexts[context] = sharing;
-        note("context");
+        note(sharing.isGlx ? "context glx" : "context egl");
     }
     return context;
 }

@@ -205,6 +205,16 @@ TEST_F(GlSharing, ContextsOfOsmesaAreNotShared) {
     EXPECT_EQ(openForGl(device(), {}, osmesa->handle()).transport.kind(), TransportKind::Host);
 }
 
+TEST_F(GlSharing, ContextsOfGlxAreNamedAsSuch) {
+    // No X server here: the layer takes the EGL context under GLX's property, and says so.
+    GlContextHandle glx = context->handle();
+    glx.platform = GlPlatformKind::Glx;
+    openForGl(device(), {}, context->handle(), "gl-sharing");
+    EXPECT_EQ(countOf(layerLines(), "context egl"), 1);
+    EXPECT_EQ(openForGl(device(), {}, glx, "gl-sharing").transport.kind(), TransportKind::GlSharing);
+    EXPECT_EQ(countOf(layerLines(), "context glx"), 1);
+}
+
 TEST_F(GlSharing, AnUnknownNameIsRefused) {
     EXPECT_THROW(openForGl(device(), {}, context->handle(), "glsharing"), UsageError);
 }

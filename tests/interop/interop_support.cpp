@@ -29,6 +29,7 @@ BoxRun::BoxRun(GlContext& context, const DeviceCaps& caps, const DeviceOptions& 
           context.makeCurrent();
           return openForGl(caps, options, handle, transport);
       }()),
+      context_(&context),
       renderer_(
           [&]() -> GlContext& {
               context.setTextureStorage(&opened.transport);

@@ -29,6 +29,10 @@ public:
            const std::string& transport)
         : BoxRun(context, caps, options, transport, context.handle()) {}
 
+    ~BoxRun() { context_->setTextureStorage(nullptr); }
+    BoxRun(const BoxRun&) = delete;
+    BoxRun& operator=(const BoxRun&) = delete;
+
     /// Draws a frame from a camera that stands elsewhere in every frame, and returns the pixels of every output.
     std::vector<std::byte> frame(Extent extent, int index);
 
@@ -41,6 +45,7 @@ public:
     GlDevice opened;
 
 private:
+    raster::GlContext* context_;
     raster::SceneRenderer renderer_;
     Pipeline pipeline_;
     Camera previous_;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cstdlib>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -13,6 +14,7 @@
 #include "interop/gl_sharing_transport.hpp"
 #include "interop/interop_support.hpp"
 #include "reference/device_variants.hpp"
+#include "support/surface_pixels.hpp"
 
 namespace earthshine {
 namespace {
@@ -304,6 +306,36 @@ TEST_F(GlSharingRules, KeptTheyGiveThePixels) {
     shared->acquire({both}, cost);
     EXPECT_EQ(read(), 2.0f);
     shared->release({both}, cost);
+    EXPECT_THAT(violationsOf(layerLines()), IsEmpty());
+}
+TEST_F(GlSharingRules, WhatIsNotFiniteStopsAtTheDoor) {
+    // The rule of unpack.cl holds for shared textures, too.
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    std::vector<float> pixels(4 * 4 * 4, 0.25f);
+    pixels[0] = std::numeric_limits<float>::quiet_NaN();
+    pixels[1] = kInfinity;
+    pixels[2] = -kInfinity;
+    pixels[4] = 1e20f;
+    pixels[5] = -1e20f;
+    pixels[6] = -1e15f;
+    context->gl().BindTexture(GL_TEXTURE_2D, texture.name);
+    context->gl().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, 4, 4, 0, GL_RGBA, GL_FLOAT, pixels.data());
+    for (const char* storage : {"image", "planar"}) {
+        DeviceOptions options;
+        options.storage = storage;
+        const Device sharing = openWithGlSharing(Device(device()), options, context->handle());
+        GlSharingTransport transport(sharing, context->handle());
+        const SharedImage image3 = transport.image(texture);
+        ImportImageStage import(sharing);
+        const Surface surface(sharing, PixelFormat::RGBA32F, {4, 4});
+        transport.acquire({image3}, cost);
+        import.enqueue(image3.image, surface);
+        transport.release({image3}, cost);
+        const HostImage arrived = test::readSurface(sharing, surface);
+        const float* p = arrived.pixel(0, 0);
+        EXPECT_THAT(std::vector<float>(p, p + 8), ElementsAre(0, 0, 0, 1, 1e15f, -1e15f, -1e15f, 1)) << storage;
+        EXPECT_EQ(p[8], 0.25f);
+    }
     EXPECT_THAT(violationsOf(layerLines()), IsEmpty());
 }
 TEST_F(GlSharingRules, UseBeforeAcquire) {

@@ -40,7 +40,7 @@ BoxRun::BoxRun(GlContext& context, const DeviceCaps& caps, const DeviceOptions& 
 
 GlFrame BoxRun::draw(const Camera& camera, Extent extent) {
     return renderer_.render(camera, std::exchange(previous_, camera), boxLights(),
-                            {extent, 48, 80, glm::vec3(0.5f, 1.0f, 2.0f)});
+                            {extent, rsmSizePx, shadowSizePx, glm::vec3(0.5f, 1.0f, 2.0f)});
 }
 
 void BoxRun::compute(Extent extent, int index) {
@@ -50,9 +50,16 @@ void BoxRun::compute(Extent extent, int index) {
     Settings settings;
     settings.sampleCount = 8;
     settings.accumulates = true;
-    settings.filterIterations = 2;
+    settings.filterIterations = filterIterations;
     pipeline_.setFrame(opened.transport, drawn, camera, boxLights());
     pipeline_.run(settings);
+}
+
+double BoxRun::stageMs(const std::string& stage) const {
+    double sum = 0.0;
+    for (const StageTime& time : pipeline_.stageTimes())
+        if (stage.empty() || time.stage == stage) sum += time.ms;
+    return sum;
 }
 
 std::vector<std::byte> BoxRun::frame(Extent extent, int index) {

@@ -42,7 +42,12 @@ public:
     /// Draws and computes nothing.
     GlFrame draw(const Camera& camera, Extent extent);
 
+    /// Milliseconds of a stage of the last frame, or of all of them for ""; 0 unless the device was opened to profile.
+    double stageMs(const std::string& stage) const;
+
     GlDevice opened;
+    int rsmSizePx = 48, shadowSizePx = 80;
+    int filterIterations = 2;
 
 private:
     raster::GlContext* context_;

@@ -10,7 +10,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <optional>
+#include <map>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -37,8 +38,9 @@ protected:
     raster::GlContext& context() { return raster::test::sharedContext(); }
 
     /// A run over this transport; none, with its reason printed and checked, if it cannot be had.
-    std::unique_ptr<BoxRun> open(const std::string& transport) {
-        const reference::Variant& variant = GetParam();
+    std::unique_ptr<BoxRun> open(const std::string& transport, bool profiles = false) {
+        reference::Variant variant = GetParam();
+        variant.options.profiling = profiles;
         try {
             return std::make_unique<BoxRun>(context(), variant.caps, variant.options, transport);
         } catch (const DeviceError& error) {
@@ -116,29 +118,40 @@ TEST_P(Transports, FrameTimes) {
     std::vector<std::string> names{"host"};
     names.insert(names.end(), std::begin(kSharing), std::end(kSharing));
     for (const std::string& transport : names) {
-        const auto run = open(transport);
+        const auto run = open(transport, true);
         if (!run) continue;
+        if (!asked.empty()) {
+            run->rsmSizePx = 512;
+            run->shadowSizePx = 2048;
+            run->filterIterations = 5;
+        }
         run->compute(extent, 0);  // compiles, allocates
-        std::vector<double> whole, wait, acquire, release;
+        std::map<std::string, std::vector<double>> ms;
         for (int i = 1; i <= frames; ++i) {
             const auto start = std::chrono::steady_clock::now();
             run->compute(extent, i);
-            whole.push_back(
-                std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+            const auto end = std::chrono::steady_clock::now();
             const TransportCost& cost = run->opened.transport.cost();
-            wait.push_back(cost.waitMs);
-            acquire.push_back(cost.acquireMs);
-            release.push_back(cost.releaseMs);
+            ms["frame"].push_back(std::chrono::duration<double, std::milli>(end - start).count());
+            ms["wait"].push_back(cost.waitMs);
+            ms["acquire"].push_back(cost.acquireMs);
+            ms["release"].push_back(cost.releaseMs);
+            ms["device"].push_back(run->stageMs(""));
+            ms["door"].push_back(run->stageMs("unpack") + run->stageMs("import_image"));
         }
-        const auto median = [](std::vector<double>& ms) {
-            std::nth_element(ms.begin(), ms.begin() + std::ptrdiff_t(ms.size() / 2), ms.end());
-            return ms[ms.size() / 2];
+        const auto median = [&ms](const char* name) {
+            std::vector<double>& all = ms[name];
+            const auto middle = all.begin() + std::ptrdiff_t(all.size() / 2);
+            std::nth_element(all.begin(), middle, all.end());
+            return *middle;
         };
         fmt::print(
-            "{}: \"{}\", {} x {}, median of {}: frame {:.3f} ms; wait {:.3f}, acquire {:.3f}, release {:.3f}; "
-            "{} bytes through the host\n",
-            transport, GetParam().caps.name, extent.widthPx, extent.heightPx, frames, median(whole), median(wait),
-            median(acquire), median(release), run->opened.transport.cost().hostBytes);
+            "{}: \"{}\", {} x {}, medians of {} frames: {:.3f} ms, raster and all; wait {:.3f}, acquire {:.3f}, "
+            "release "
+            "{:.3f}; on the device {:.3f}, of it unpack or import_image {:.3f}; {} bytes through the host\n",
+            transport, GetParam().caps.name, extent.widthPx, extent.heightPx, frames, median("frame"), median("wait"),
+            median("acquire"), median("release"), median("device"), median("door"),
+            run->opened.transport.cost().hostBytes);
         EXPECT_EQ(run->opened.transport.cost().hostBytes == 0, transport != "host");
     }
 }

@@ -1,7 +1,7 @@
 // import_image: an image that another API drew into (OpenGL's textures), into a surface.
-//   The second door of the OpenCL half, with the same rule as unpack: what is not finite becomes 0 and the rest is cut to
-//   +-1e15. The pass also sets the texture free: it is held for its length alone, and the frame's normals and depths are
-//   still here when the next frame is drawn over them.
+//   The second door of the OpenCL half, with the same rule as unpack: what is not finite becomes 0 and the rest is cut
+//   to +-1e15. The pass also sets the texture free: it is held for its length alone, and the frame's normals and depths
+//   are still here when the next frame is drawn over them.
 //   in   image   R32F, RGBA16F or RGBA32F, row 0 at the top, of the surface's extent
 //   out  outSurface   one number a pixel of R32F, else three (alpha is dropped)
 //   Work 2D, one item per LANES pixels of a row, any local size; items past the edge return.

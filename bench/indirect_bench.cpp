@@ -29,7 +29,7 @@ struct Frame {
         FrameGeometry geometry{room.rays, room.extent, room.inputs.rsm.sizePx, 1, room.inputs.shadowExtent};
         geometry.frameIndex = index++;
         geometry.previousRays = room.rays;
-        geometry.hasHistory = pass.hasHistory(room.extent, settings.divisor);
+        geometry.hasHistory = pass.hasHistory(room.extent, settings);
         geometry.hasConfidence = pass.hasConfidence();
         pass.enqueue(room.inputs, previous, makeParams(settings, geometry), {});
         modulate.enqueue({room.inputs.albedo, pass.irradiance(), nullptr, radiance});

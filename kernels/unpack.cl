@@ -5,14 +5,9 @@
 //   out  outSurface   the rows [firstRowPx; firstRowPx + heightPx); one number a pixel of R32F, else three (alpha is dropped)
 //   Work 2D, one item per LANES pixels of a row, any local size; items past the edge return.
 
+#include "sanitised.clh"
 #include "surface.clh"
 #include "unpack_params.h"
-
-// 0 where the exponent is all ones. By bits: a compiler may take x == x for true.
-static vfloat sanitised(vfloat v) {
-    vfloat finite = vselect((asVint(v) & 0x7f800000) == 0x7f800000, 0.0f, v);
-    return min(max(finite, -1e15f), 1e15f);
-}
 
 static vfloat floatFromHalf(vuint half_) {
     vuint magnitude = half_ & 0x7fffu;

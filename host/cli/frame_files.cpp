@@ -96,6 +96,12 @@ bool FrameFiles::wants(const char* aov) const {
     return std::find(arguments_.aovs.begin(), arguments_.aovs.end(), aov) != arguments_.aovs.end();
 }
 
+bool FrameFiles::needsInputs() const {
+    constexpr const char* kOfInputs[] = {"albedo",    "normal",     "depth",    "motion",      "emission",
+                                         "rsm-depth", "rsm-normal", "rsm-flux", "shadow-depth"};
+    return std::any_of(std::begin(kOfInputs), std::end(kOfInputs), [this](const char* aov) { return wants(aov); });
+}
+
 void FrameFiles::check(const FrameInputs& frame) const {
     if (wants("motion") && frame.gbuffer.motion.empty()) throw InputError("--aov: these inputs have no motion");
     if (wants("emission") && frame.gbuffer.emission.empty()) throw InputError("--aov: these inputs have no emission");

@@ -38,11 +38,14 @@ public:
     /// Announces every file. Throws UsageError for names that do not end as they should, or as OutputSet does.
     FrameFiles(const FrameFileArguments& arguments, OutputSet& outputs);
 
+    /// Do the pictures need the frame's own images, and not only what the pipeline computes?
+    bool needsInputs() const;
+
     /// Throws InputError if an AOV is asked for that the frame does not have. Before run().
     void check(const FrameInputs& frame) const;
 
-    /// Writes the pictures of the pipeline's last run. Warns of values that are not finite, and returns their counts,
-    /// one entry a layer.
+    /// Writes the pictures of the pipeline's last run; `frame` may be empty if they do not need it. Warns of values
+    /// that are not finite, and returns their counts, one entry a layer.
     std::vector<NonFiniteLayer> writePictures(Pipeline& pipeline, const FrameInputs& frame) const;
 
     /// Writes the report, if one was asked for.

@@ -60,6 +60,13 @@ void FrameTiming::addStep(const std::string& step, double ms) {
     find(steps_, step).ms.push_back(ms);
 }
 
+void FrameTiming::addTransport(const TransportCost& cost) {
+    find(transport_, "wait").ms.push_back(cost.waitMs);
+    find(transport_, "acquire").ms.push_back(cost.acquireMs);
+    find(transport_, "release").ms.push_back(cost.releaseMs);
+    transportHostBytes_ = cost.hostBytes;
+}
+
 void FrameTiming::clear() {
     *this = {};
     isCold_ = false;
@@ -72,6 +79,11 @@ std::string FrameTiming::table() const {
     text += row("all stages", deviceTotal_);
     text += fmt::format("\n{:<24}\n", "step (wall clock)");
     for (const auto& [name, series] : steps_) text += row(name, series);
+    if (!transport_.empty()) {
+        text += fmt::format("\n{:<24}\n", "transport (wall clock)");
+        for (const auto& [name, series] : transport_) text += row(name, series);
+        text += fmt::format("{:<24}{:>11.3f} MB a frame\n", "through the host", 1e-6 * double(transportHostBytes_));
+    }
     if (isCold_) text += "\nThe first frame compiles and allocates; --frames 8 shows how long the later ones take.\n";
     return text;
 }

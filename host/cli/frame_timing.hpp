@@ -24,18 +24,24 @@ public:
     void addStages(const std::vector<StageTime>& times);  ///< also their sum, as deviceTotal
     void addStep(const std::string& step, double ms);
 
+    /// What bringing the frame from OpenGL to OpenCL cost.
+    void addTransport(const TransportCost& cost);
+
     /// Forgets all so far, when the first of several frames is over: it compiles and allocates.
     void clear();
 
     const std::vector<std::pair<std::string, Series>>& stages() const { return stages_; }
     const std::vector<std::pair<std::string, Series>>& steps() const { return steps_; }
     const Series& deviceTotal() const { return deviceTotal_; }
+    const std::vector<std::pair<std::string, Series>>& transport() const { return transport_; }
+    std::size_t transportHostBytes() const { return transportHostBytes_; }  ///< of the last frame
 
     /// A table for people: a line a stage, then the sum, then the steps.
     std::string table() const;
 
 private:
-    std::vector<std::pair<std::string, Series>> stages_, steps_;
+    std::vector<std::pair<std::string, Series>> stages_, steps_, transport_;
+    std::size_t transportHostBytes_ = 0;
     Series deviceTotal_;
     bool isCold_ = true;
 };

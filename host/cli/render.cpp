@@ -25,14 +25,14 @@ namespace earthshine::cli {
 
 namespace {
 
-constexpr const char* kTransportNames[] = {"auto", "host"};
+constexpr const char* kTransportChoices[] = {"auto", "host", "gl-sharing", "external-memory"};
 
 struct RenderArguments {
     std::string scene;
     RasterSettings raster;
     Settings settings;
     SequenceArguments sequence;
-    int transport = 0;  ///< into kTransportNames; both are the host's memory
+    int transport = 0;  ///< into kTransportChoices
     DeviceArguments device;
     FrameFileArguments files;
     std::string saveInputs;
@@ -67,14 +67,20 @@ void renderScene(const RenderArguments& arguments) {
     const double loadMs = load.ms();
     note("sceneMs");
 
+    GlDevice opened =
+        openForGl(choice.caps, arguments.device.options, context->handle(), kTransportChoices[arguments.transport]);
+    const Device& device = opened.device;
+    Transport& transport = opened.transport;
+    context->setTextureStorage(&transport);
     raster::SceneRenderer renderer(*context, scene);
     note("uploadMs");
-    const Device device(choice.caps, arguments.device.options);
     Pipeline pipeline(device);
     note("pipelineMs");
-    log(LogLevel::Info, "transport host: textures are read back into memory that OpenCL uses in place");
 
+    // The frame's own images are in host memory if they came that way, else only if something asks for them.
+    const bool needsInputs = files.needsInputs() || !inputsFolder.empty();
     FrameImages images;
+    FrameInputs inputs;
     FrameTiming timing;
     std::vector<Light> lights;
     files.begin(arguments.raster.size, double(arguments.sequence.framesPerSecond));
@@ -91,34 +97,41 @@ void renderScene(const RenderArguments& arguments) {
             const GlFrame textures = renderer.render(frame.camera, previousCamera, frame.lights,
                                                      {arguments.raster.size, arguments.raster.rsmSizePx,
                                                       arguments.raster.shadowSizePx, arguments.raster.background});
-            context->gl().Finish();
-            timing.addStep("raster", draw.ms());
-
-            const Stopwatch read;
-            images = readBack(textures, frame.camera, frame.lights, context->getProcAddress());
-            timing.addStep("read back", read.ms());
-            if (i == -warmupCount) files.check(images.inputs());
+            const double drawMs = draw.ms();
+            if (i == -warmupCount && needsInputs) {
+                images = readBack(textures, frame.camera, frame.lights, context->getProcAddress());
+                files.check(images.inputs());
+            }
 
             const Stopwatch compute;
-            pipeline.setFrame(images.inputs());
+            pipeline.setFrame(transport, textures, frame.camera, frame.lights);
             pipeline.run(arguments.settings,
                          [&](double part) { progress.update((i + warmupCount + part) / (frameCount + warmupCount)); });
-            timing.addStep("compute", compute.ms());
+            const TransportCost& cost = transport.cost();
+            timing.addStep("raster", drawMs + cost.waitMs);
+            timing.addStep("transport", cost.acquireMs + cost.releaseMs);
+            timing.addStep("compute", compute.ms() - cost.waitMs - cost.acquireMs - cost.releaseMs);
             if (i == -warmupCount) {
                 note("firstFrameMs");
                 start["firstPixelMs"] = processMs();
             }
             timing.addStep("frame", whole.ms());
+            timing.addTransport(cost);
             timing.addStages(pipeline.stageTimes());
-            if (i >= firstFrame) files.write(i, pipeline, images.inputs());
+            if (transport.hostImages()) {
+                inputs = transport.hostImages()->inputs();
+            } else if (needsInputs && i >= firstFrame) {
+                images = readBack(textures, frame.camera, frame.lights, context->getProcAddress());
+                inputs = images.inputs();
+            }
+            if (i >= firstFrame) files.write(i, pipeline, inputs);
             previousCamera = frame.camera;
             lights = frame.lights;
         }
     }
 
-    const FrameInputs frame = images.inputs();
     const auto paths = files.paths();
-    if (!inputsFolder.empty()) writeInputs(inputsFolder, frame);
+    if (!inputsFolder.empty()) writeInputs(inputsFolder, inputs);
 
     nlohmann::ordered_json report = {{"program", programVersion()}, {"command", "render"}};
     report["scene"] = sceneJson(arguments.scene, scene, lights);
@@ -130,7 +143,8 @@ void renderScene(const RenderArguments& arguments) {
     report["gl"] = {
         {"platform", gl.platform}, {"vendor", gl.vendor}, {"renderer", gl.renderer}, {"version", gl.version}};
     report["sequence"] = sequenceJson(arguments.sequence);
-    report["transport"] = "host";
+    report["transport"] = transport.name();
+    report["transportReason"] = transport.reason();
     report["loadMs"] = loadMs;
     report["start"] = start;
     addFrame(report, {device, choice.why, arguments.settings, timing, frameCount, pipeline.exposure(),
@@ -141,7 +155,7 @@ void renderScene(const RenderArguments& arguments) {
                scene.materials.size(), scene.textures.size());
     fmt::print("OpenGL      {}: {}\n", gl.platform, gl.renderer);
     fmt::print("OpenCL      {}\n", deviceTitle(choice.caps));
-    fmt::print("transport   host\n\n{}\n", timing.table());
+    fmt::print("transport   {} ({})\n\n{}\n", transport.name(), transport.reason(), timing.table());
     for (const auto& path : paths) fmt::print("wrote {}\n", path.string());
 }
 
@@ -161,8 +175,10 @@ void addRender(Options& program) {
     options.group("Light");
     addLightSettings(options, arguments->settings);
     addDeviceOptions(options, arguments->device);
-    options.option("--transport", "auto|host", "auto", "how pixels get from OpenGL to OpenCL",
-                   [arguments](const std::string& text) { arguments->transport = parseChoice(text, kTransportNames); });
+    options.option(
+        "--transport", "auto|host|gl-sharing|external-memory", "auto",
+        "how pixels get from OpenGL to OpenCL; auto takes the best that passes a round trip",
+        [arguments](const std::string& text) { arguments->transport = parseChoice(text, kTransportChoices); });
     addSequenceOptions(options, arguments->sequence);
 }
 

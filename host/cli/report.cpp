@@ -77,6 +77,11 @@ void addFrame(Json& report, const FrameReport& frame) {
     report["steps"] = Json::array();
     for (const auto& [name, series] : frame.timing.steps()) report["steps"].push_back(seriesJson("step", name, series));
     report["deviceMemoryBytes"] = frame.device.allocatedBytes();
+    if (!frame.timing.transport().empty()) {
+        Json cost = Json::array();
+        for (const auto& [name, series] : frame.timing.transport()) cost.push_back(seriesJson("part", name, series));
+        report["transportCost"] = {{"parts", std::move(cost)}, {"hostBytes", frame.timing.transportHostBytes()}};
+    }
     report["exposure"] = frame.exposure;
     report["gatheredPixels"] = frame.gatheredPixels;
     report["nonFinite"] = Json::object();

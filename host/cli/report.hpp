@@ -32,8 +32,8 @@ struct FrameReport {
     std::vector<std::filesystem::path> outputs;
 };
 
-/// Puts its keys into `report`: device, settings, frames, stages, steps, deviceMemoryBytes, exposure,
-/// gatheredPixels, nonFinite, outputs.
+/// Puts its keys into `report`: device, settings, frames, stages, steps, deviceMemoryBytes, transportCost (of frames
+/// that came from OpenGL), exposure, gatheredPixels, nonFinite, outputs.
 void addFrame(nlohmann::ordered_json& report, const FrameReport& frame);
 
 }  // namespace earthshine::cli

@@ -28,6 +28,9 @@ public:
     /// Starts the film, if there is one. Throws as Film.
     void begin(Extent extent, double framesPerSecond);
 
+    /// As FrameFiles::needsInputs.
+    bool needsInputs() const { return last_.needsInputs(); }
+
     /// As FrameFiles::check. Before run().
     void check(const FrameInputs& frame) const { last_.check(frame); }
 

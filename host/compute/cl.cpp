@@ -49,12 +49,22 @@ std::string clErrorName(cl_int code) {
         {CL_INVALID_OPERATION, "CL_INVALID_OPERATION"},
         {CL_INVALID_BUFFER_SIZE, "CL_INVALID_BUFFER_SIZE"},
         {CL_INVALID_GLOBAL_WORK_SIZE, "CL_INVALID_GLOBAL_WORK_SIZE"},
+        {CL_INVALID_IMAGE_DESCRIPTOR, "CL_INVALID_IMAGE_DESCRIPTOR"},
+        {CL_INVALID_GL_OBJECT, "CL_INVALID_GL_OBJECT"},
+        {CL_INVALID_PROPERTY, "CL_INVALID_PROPERTY"},
+        {-1000, "CL_INVALID_GL_SHAREGROUP_REFERENCE_KHR"},
+        {-1142, "CL_INVALID_SEMAPHORE_KHR"},
         {-1001, "CL_PLATFORM_NOT_FOUND_KHR"},
         {-9999, "NVIDIA: illegal memory access"},
     };
     for (const auto& entry : kNames)
         if (entry.code == code) return fmt::format("{} ({})", entry.name, code);
     return fmt::format("OpenCL error {}", code);
+}
+
+bool hasExtension(const cl::Device& device, const std::string& name) {
+    const std::string extensions = fmt::format(" {} ", device.getInfo<CL_DEVICE_EXTENSIONS>());
+    return extensions.find(fmt::format(" {} ", name)) != std::string::npos;
 }
 
 void throwDeviceError(const std::string& what, const std::string& device, const cl::Error& error) {

@@ -13,6 +13,9 @@ namespace earthshine {
 /// "CL_OUT_OF_RESOURCES (-5)".
 std::string clErrorName(cl_int code);
 
+/// Is the extension one of the device's?
+bool hasExtension(const cl::Device& device, const std::string& name);
+
 [[noreturn]] void throwDeviceError(const std::string& what, const std::string& device, const cl::Error& error);
 
 /// Runs `body`; a cl::Error becomes a DeviceError "what: clCall: CL_NAME (code) on \"device\"".

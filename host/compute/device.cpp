@@ -77,8 +77,7 @@ void query(const cl::Platform& platform, Found& found) {
         caps.maxImageSizePx[0] = device.getInfo<CL_DEVICE_IMAGE2D_MAX_WIDTH>();
         caps.maxImageSizePx[1] = device.getInfo<CL_DEVICE_IMAGE2D_MAX_HEIGHT>();
     }
-    const std::string extensions = " " + device.getInfo<CL_DEVICE_EXTENSIONS>() + " ";
-    const auto has = [&](const char* name) { return extensions.find(fmt::format(" {} ", name)) != std::string::npos; };
+    const auto has = [&](const char* name) { return hasExtension(device, name); };
     caps.transports = {"host"};
     if (has("cl_khr_gl_sharing")) caps.transports.emplace_back("gl-sharing");
     if (has("cl_khr_external_memory_opaque_fd") && has("cl_khr_external_semaphore_opaque_fd"))
@@ -201,7 +200,13 @@ Device::Device(const DeviceCaps& caps, const DeviceOptions& options) : impl_(std
         throw DeviceError(fmt::format("device: \"{}\" is no longer number {}", caps.name, caps.index));
     impl_->checked("opening the device", [&] {
         impl_->device = all[std::size_t(caps.index)].device;
-        impl_->context = cl::Context(impl_->device);
+        std::vector<cl_context_properties> properties(options.contextProperties.begin(),
+                                                      options.contextProperties.end());
+        if (!properties.empty()) {
+            const cl_platform_id platform = impl_->device.getInfo<CL_DEVICE_PLATFORM>();
+            properties.insert(properties.end(), {CL_CONTEXT_PLATFORM, reinterpret_cast<std::intptr_t>(platform), 0});
+        }
+        impl_->context = cl::Context(impl_->device, properties.empty() ? nullptr : properties.data());
         impl_->queue = cl::CommandQueue(impl_->context, impl_->device,
                                         options.profiling ? cl::QueueProperties::Profiling : cl::QueueProperties::None);
         impl_->timesByClock = options.profiling && tellsNoTimes(impl_->context, impl_->queue);

@@ -68,6 +68,11 @@ Kernel& Kernel::set(std::string_view argument, const cl::Buffer& buffer) {
     return *this;
 }
 
+Kernel& Kernel::set(std::string_view argument, const cl::Image2D& image) {
+    setMemory(argument, image);
+    return *this;
+}
+
 void Kernel::enqueue(Extent extent) {
     const int lanes = device_.tuning().lanes;
     enqueueItems(std::size_t((extent.widthPx + lanes - 1) / lanes), std::size_t(extent.heightPx));

@@ -27,6 +27,7 @@ public:
     /// Throws DeviceError if there is no such argument or the driver refuses the value.
     Kernel& set(std::string_view argument, const Surface& surface);
     Kernel& set(std::string_view argument, const cl::Buffer& buffer);
+    Kernel& set(std::string_view argument, const cl::Image2D& image);
     template <class Params>
     Kernel& setParams(std::string_view argument, const Params& params) {
         setRaw(argument, sizeof(Params), &params);

@@ -1,7 +1,10 @@
 #pragma once
 // A frame as stages read it, whatever way it came.
 
+#include <vector>
+
 #include "compute/surface.hpp"
+#include "earthshine/frame.hpp"
 #include "rsm_pack_params.h"
 #include "stages/rsm_view.hpp"
 
@@ -16,5 +19,17 @@ struct FrameSurfaces {
     Extent shadowExtent;  ///< of one light's map
     cl::Buffer lights;    ///< LightParams
 };
+
+/// What of a frame decides which surfaces it needs.
+struct FrameShape {
+    Extent extent;
+    Extent rsm, shadow;  ///< of one light's map; without a light, anything
+    bool hasMotion = false, hasEmission = false;
+};
+
+/// Makes the surfaces of a frame, anew where they are not of its shape, and uploads its lights (waits for that). The
+/// pixels are still to come. Throws DeviceError for maps that are more than the device can hold.
+void prepareSurfaces(const Device& device, const FrameShape& shape, const std::vector<Light>& lights,
+                     FrameSurfaces& out);
 
 }  // namespace earthshine

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "earthshine/error.hpp"
-#include "stages/frame_params.hpp"
 
 namespace earthshine {
 
@@ -61,24 +60,6 @@ void checkInputs(const FrameInputs& frame) {
 
 HostTransport::HostTransport(const Device& device) : device_(device), unpack_(device) {}
 
-// The maps of all lights stand below one another: in an image, whose height devices limit, or in planes and records,
-// which kernels reach with 32-bit byte offsets.
-void HostTransport::checkAtlas(const char* what, Extent map, int mapCount) const {
-    const DeviceCaps& caps = device_.caps();
-    const auto rows = std::int64_t(map.heightPx) * mapCount;
-    if (device_.tuning().storage == Storage::Image &&
-        (rows > std::int64_t(caps.maxImageSizePx[1]) || map.widthPx > std::int64_t(caps.maxImageSizePx[0])))
-        throw DeviceError(
-            fmt::format("{} {} of {} x {} are more than an image of \"{}\" holds ({} rows); make them smaller, or use "
-                        "planar storage",
-                        mapCount, what, map.widthPx, map.heightPx, caps.name, caps.maxImageSizePx[1]));
-    constexpr std::int64_t kMaxTexels = (std::int64_t(1) << 32) / std::int64_t(sizeof(RsmRecord));
-    if (rows * map.widthPx >= kMaxTexels)
-        throw DeviceError(
-            fmt::format("{} {} of {} x {} are more than the {} texels that kernels can address; make them smaller",
-                        mapCount, what, map.widthPx, map.heightPx, kMaxTexels));
-}
-
 cl::Buffer HostTransport::borrow(const ImageView& image) {
     // In place: page-aligned memory, whose last page is readable to its end, so the size may round up to 64.
     const bool inPlace = device_.caps().unifiedMemory && reinterpret_cast<std::uintptr_t>(image.data) % 4096 == 0;
@@ -111,60 +92,23 @@ void HostTransport::enqueueMaps(const std::vector<LightMaps>& maps, ImageView Li
 }
 
 void HostTransport::enqueue(const FrameInputs& frame, FrameSurfaces& out) {
-    const Extent extent = frame.gbuffer.depth.extent;
-    const int lightCount = int(frame.lights.size());
-    const Extent rsm = lightCount > 0 ? frame.lightMaps[0].rsmDepth.extent : Extent{1, 1};
-    const Extent shadow = lightCount > 0 ? frame.lightMaps[0].shadowDepth.extent : Extent{1, 1};
-    const int mapCount = lightCount > 0 ? lightCount : 1;  // without a light, one texel that nobody reads
-
-    checkAtlas("shadow maps", shadow, mapCount);
-    checkAtlas("RSMs", rsm, mapCount);
-
-    std::vector<LightParams> lights;
-    for (const Light& light : frame.lights) lights.push_back(makeLightParams(light, rsm, shadow));
-    lights.resize(std::size_t(mapCount));
-    out.lights = device_.impl().makeBuffer(sizeof(LightParams) * lights.size());
-    Device::Impl& impl = device_.impl();
-    impl.checked("writing the lights", [&] {
-        impl.queue.enqueueWriteBuffer(out.lights, CL_TRUE, 0, sizeof(LightParams) * lights.size(), lights.data());
-        return 0;
-    });
-
-    ensure(device_, out.albedo, PixelFormat::RGBA16F, extent);
-    ensure(device_, out.normalWs, PixelFormat::RGBA16F, extent);
-    ensure(device_, out.depth, PixelFormat::R32F, extent);
-    enqueueImage(frame.gbuffer.albedo, out.albedo, 0);
-    enqueueImage(frame.gbuffer.normalWs, out.normalWs, 0);
-    enqueueImage(frame.gbuffer.depth, out.depth, 0);
-    const auto enqueueOptional = [&](const ImageView& image, Surface& surface) {
-        if (image.empty()) {
-            surface = {};
-            return;
-        }
-        ensure(device_, surface, PixelFormat::RGBA16F, extent);
-        enqueueImage(image, surface, 0);
-    };
-    enqueueOptional(frame.gbuffer.emission, out.emission);
-    enqueueOptional(frame.gbuffer.motion, out.motion);
-
-    const Extent rsmAtlas{rsm.widthPx, rsm.heightPx * mapCount};
-    ensure(device_, out.rsm.depth, PixelFormat::R32F, rsmAtlas);
-    ensure(device_, out.rsm.normalWs, PixelFormat::RGBA16F, rsmAtlas);
-    ensure(device_, out.rsm.flux, PixelFormat::RGBA32F, rsmAtlas);
-    ensure(device_, out.shadowDepth, PixelFormat::R32F, {shadow.widthPx, shadow.heightPx * mapCount});
-    out.shadowExtent = shadow;
-    if (device_.tuning().rsmRecords &&
-        (out.rsm.sizePx != rsm.widthPx || out.rsm.lightCount != lightCount || !out.rsm.records()))
-        out.rsm.records = device_.impl().makeBuffer(sizeof(RsmRecord) * std::size_t(rsmAtlas.widthPx) *
-                                                    std::size_t(rsmAtlas.heightPx));
-    out.rsm.sizePx = rsm.widthPx;
-    out.rsm.lightCount = lightCount;
-    if (lightCount > 0) {
-        enqueueMaps(frame.lightMaps, &LightMaps::rsmDepth, out.rsm.depth);
-        enqueueMaps(frame.lightMaps, &LightMaps::rsmNormalWs, out.rsm.normalWs);
-        enqueueMaps(frame.lightMaps, &LightMaps::rsmFlux, out.rsm.flux);
-        enqueueMaps(frame.lightMaps, &LightMaps::shadowDepth, out.shadowDepth);
+    const GBuffer& g = frame.gbuffer;
+    FrameShape shape{g.depth.extent, {1, 1}, {1, 1}, !g.motion.empty(), !g.emission.empty()};
+    if (!frame.lights.empty()) {
+        shape.rsm = frame.lightMaps[0].rsmDepth.extent;
+        shape.shadow = frame.lightMaps[0].shadowDepth.extent;
     }
+    prepareSurfaces(device_, shape, frame.lights, out);
+    enqueueImage(g.albedo, out.albedo, 0);
+    enqueueImage(g.normalWs, out.normalWs, 0);
+    enqueueImage(g.depth, out.depth, 0);
+    if (shape.hasEmission) enqueueImage(g.emission, out.emission, 0);
+    if (shape.hasMotion) enqueueImage(g.motion, out.motion, 0);
+    if (frame.lights.empty()) return;
+    enqueueMaps(frame.lightMaps, &LightMaps::rsmDepth, out.rsm.depth);
+    enqueueMaps(frame.lightMaps, &LightMaps::rsmNormalWs, out.rsm.normalWs);
+    enqueueMaps(frame.lightMaps, &LightMaps::rsmFlux, out.rsm.flux);
+    enqueueMaps(frame.lightMaps, &LightMaps::shadowDepth, out.shadowDepth);
 }
 
 }  // namespace earthshine

@@ -26,7 +26,6 @@ public:
 
 private:
     void enqueueMaps(const std::vector<LightMaps>& maps, ImageView LightMaps::*member, const Surface& surface);
-    void checkAtlas(const char* what, Extent map, int mapCount) const;
     cl::Buffer borrow(const ImageView& image);
 
     Device device_;

@@ -8,6 +8,7 @@
 
 #include "earthshine/error.hpp"
 #include "interop/host_transport.hpp"
+#include "interop/transport_impl.hpp"
 #include "pipeline/indirect_pass.hpp"
 #include "pipeline/make_params.hpp"
 #include "stages/direct_light_stage.hpp"
@@ -43,6 +44,8 @@ struct Pipeline::Impl {
     InterleaveStage interleave;
 
     FrameInputs frame;
+    Transport* glTransport = nullptr;  ///< what brings the images of `frame`; null if it has them
+    GlFrame glFrame;
     FrameSurfaces inputs, previous;  ///< of `previous` only normal and depth are kept
     ViewRays previousRays{};
     Extent extent;
@@ -54,6 +57,10 @@ struct Pipeline::Impl {
     int frameIndex = 0;
     std::vector<StageTime> times;
 
+    void bringIn() {
+        if (glTransport && glTransport->impl().enqueue(glFrame, frame, inputs)) return;
+        transport.enqueue(frame, inputs);
+    }
     void allocate() {
         const Extent wanted = inputs.depth.extent();
         if (extent == wanted) return;
@@ -164,6 +171,16 @@ Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 void Pipeline::setFrame(const FrameInputs& frame) {
     checkInputs(frame);
     impl_->frame = frame;
+    impl_->glTransport = nullptr;
+    impl_->hasFrame = true;
+}
+
+void Pipeline::setFrame(Transport& transport, const GlFrame& frame, const Camera& camera,
+                        const std::vector<Light>& lights) {
+    checkFrame(frame, camera, lights);
+    impl_->frame = {camera, {}, lights, {}};
+    impl_->glTransport = &transport;
+    impl_->glFrame = frame;
     impl_->hasFrame = true;
 }
 
@@ -184,7 +201,7 @@ void Pipeline::run(const Settings& settings, const std::function<void(double)>& 
     const Impl::Borrowing borrowing(p);
     std::swap(p.inputs.normalWs, p.previous.normalWs);
     std::swap(p.inputs.depth, p.previous.depth);
-    p.transport.enqueue(p.frame, p.inputs);
+    p.bringIn();
     p.allocate();
     const ViewRays rays = makeViewRays(p.frame.camera, p.extent);
     p.params = makeParams(

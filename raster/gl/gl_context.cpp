@@ -133,6 +133,11 @@ GlGetProcAddress GlContext::getProcAddress() const {
     return [platform = platform_.get()](const char* name) { return platform->getProcAddress(name); };
 }
 
+GlContextHandle GlContext::handle() const {
+    const GlPlatformKind kind = nativeDisplay() ? GlPlatformKind::Egl : GlPlatformKind::Other;  // OSMesa has none
+    return {getProcAddress(), kind, nativeContext(), nativeDisplay(), description_.renderer};
+}
+
 void GlContext::listenForMessages() {
     const auto debugMessageCallback =
         reinterpret_cast<PFNGLDEBUGMESSAGECALLBACKPROC>(platform_->getProcAddress("glDebugMessageCallback"));

@@ -36,6 +36,14 @@ public:
 
     const GlFunctions& gl() const noexcept { return functions_; }
     const GlDescription& description() const noexcept { return description_; }
+    /// This context for those who share its textures. Valid while it lives.
+    GlContextHandle handle() const;
+
+    /// Who gives the textures of render targets their memory; null (as at birth): GL alone. It must outlive every
+    /// render target of this context.
+    void setTextureStorage(GlTextureStorage* storage) noexcept { textureStorage_ = storage; }
+    GlTextureStorage* textureStorage() const noexcept { return textureStorage_; }
+
     void* nativeContext() const { return platform_->nativeContext(); }  ///< EGLContext or OSMesaContext
     void* nativeDisplay() const { return platform_->nativeDisplay(); }  ///< EGLDisplay; null on OSMesa
 
@@ -49,6 +57,7 @@ private:
     std::unique_ptr<GlPlatform> platform_;
     GlFunctions functions_;
     GlDescription description_;
+    GlTextureStorage* textureStorage_ = nullptr;
     std::string driverMessage_;  ///< the driver's last word about an error
 };
 

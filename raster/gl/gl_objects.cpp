@@ -37,10 +37,14 @@ Object make(const GlFunctions& gl, Generate generate) {
     return Object(gl, name);
 }
 
-void allocate(const GlFunctions& gl, GLuint texture, const GlFormat& format, Extent extent) {
-    gl.BindTexture(GL_TEXTURE_2D, texture);
+/// Storage of GL's own for the texture that is bound.
+void allocate(const GlFunctions& gl, const GlFormat& format, Extent extent) {
     gl.TexImage2D(GL_TEXTURE_2D, 0, format.internalFormat, extent.widthPx, extent.heightPx, 0, format.format,
                   format.type, nullptr);
+}
+
+/// One level, nearest filtering.
+void setParameters(const GlFunctions& gl) {
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
@@ -66,6 +70,16 @@ FramebufferObject makeFramebuffer(const GlFunctions& gl) {
 RenderTarget::RenderTarget(const GlFunctions& gl, std::span<const PixelFormat> formats)
     : gl_(&gl), formats_(formats.begin(), formats.end()) {}
 
+RenderTarget::~RenderTarget() {
+    forgetTextures();
+}
+
+void RenderTarget::forgetTextures() noexcept {
+    if (storage_)
+        for (const TextureObject& texture : textures_) storage_->forget(texture.name());
+    textures_.clear();
+}
+
 void RenderTarget::resize(GlContext& context, Extent extent, std::string_view what) {
     if (extent == extent_) return;
     const int most = context.description().maxTextureSizePx;
@@ -75,18 +89,24 @@ void RenderTarget::resize(GlContext& context, Extent extent, std::string_view wh
     // Made anew rather than resized in place: whoever shared the old textures must see that they are gone.
     const GlFunctions& gl = *gl_;
     extent_ = {};
-    textures_.clear();
+    forgetTextures();
+    storage_ = context.textureStorage();
     framebuffer_ = makeFramebuffer(gl);
     gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
     std::vector<GLenum> attachments;
     for (const PixelFormat format : formats_) {
         textures_.push_back(makeTexture(gl));
-        allocate(gl, textures_.back().name(), glFormat(format), extent);
+        const GLuint texture = textures_.back().name();
+        gl.BindTexture(GL_TEXTURE_2D, texture);
+        if (!storage_ || !storage_->allocate({texture, format, extent})) allocate(gl, glFormat(format), extent);
+        setParameters(gl);
         attachments.push_back(GL_COLOR_ATTACHMENT0 + GLenum(attachments.size()));
         gl.FramebufferTexture2D(GL_FRAMEBUFFER, attachments.back(), GL_TEXTURE_2D, textures_.back().name(), 0);
     }
     depth_ = makeTexture(gl);
-    allocate(gl, depth_.name(), {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT}, extent);
+    gl.BindTexture(GL_TEXTURE_2D, depth_.name());
+    allocate(gl, {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT}, extent);
+    setParameters(gl);
     gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_.name(), 0);
     gl.DrawBuffers(GLsizei(attachments.size()), attachments.data());
     context.check(fmt::format("{}: textures of {}x{}", what, extent.widthPx, extent.heightPx));

@@ -56,6 +56,9 @@ class RenderTarget {
 public:
     /// `formats` in the order of the fragment shader's outputs.
     RenderTarget(const GlFunctions& gl, std::span<const PixelFormat> formats);
+    ~RenderTarget();
+    RenderTarget(const RenderTarget&) = delete;
+    RenderTarget& operator=(const RenderTarget&) = delete;
 
     /// Gives all textures this extent, if they have another; their contents are then undefined. Throws DeviceError if
     /// the textures would be larger than the context allows (`what` says whose they are) or cannot be drawn into.
@@ -77,7 +80,10 @@ public:
     GlTexture texture(int index) const;
 
 private:
+    void forgetTextures() noexcept;
+
     const GlFunctions* gl_;
+    GlTextureStorage* storage_ = nullptr;  ///< of the textures, whoever owns them
     std::vector<PixelFormat> formats_;
     std::vector<TextureObject> textures_;
     TextureObject depth_;

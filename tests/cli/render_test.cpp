@@ -134,8 +134,8 @@ TEST_F(Render, SavedInputsGiveTheSamePixels) {
 }
 
 TEST_F(Render, TheReportHoldsEverySettingAsItWasGiven) {
-    Arguments arguments{"-o",      path("a.png"), "--report",     path("r.json"), "--frames", "3",
-                        "--lanes", "4",           "--background", "1,2.5,4",      "--sun",    "10,20,3000"};
+    Arguments arguments{"-o", path("a.png"),  "--report", path("r.json"), "--frames",   "3",           "--lanes",
+                        "4",  "--background", "1,2.5,4",  "--sun",        "10,20,3000", "--transport", "host"};
     nlohmann::json expected;
     Settings settings;
     forEachSetting(settings, [&](const SettingInfo& info, auto& value) {
@@ -164,6 +164,14 @@ TEST_F(Render, TheReportHoldsEverySettingAsItWasGiven) {
     EXPECT_EQ(report["scene"]["triangles"], 34);
     EXPECT_EQ(report["device"]["tuning"]["lanes"], 4);
     EXPECT_EQ(report["transport"], "host");
+    EXPECT_EQ(report["transportReason"], "asked for");
+    // 64 x 36 pixels of 36 bytes; for the lamp and the sun each an RSM of 32 x 32 texels of 28, a shadow map of 64 x 64
+    // texels of 4.
+    const int frameBytes = 64 * 36 * 36 + 2 * (32 * 32 * 28 + 64 * 64 * 4);
+    EXPECT_EQ(report["transportCost"]["hostBytes"], frameBytes * (report["device"]["unifiedMemory"] ? 1 : 2));
+    std::vector<std::string> costs;
+    for (const auto& part : report["transportCost"]["parts"]) costs.push_back(part["part"]);
+    EXPECT_THAT(costs, ElementsAre("wait", "acquire", "release"));
     EXPECT_NE(report["gl"]["renderer"], "");
     EXPECT_GT(report["deviceMemoryBytes"], 64 * 36 * 100);  // a frame's surfaces have more than a hundred bytes a pixel
     EXPECT_EQ(report["frames"], 3);
@@ -180,7 +188,7 @@ TEST_F(Render, TheReportHoldsEverySettingAsItWasGiven) {
     }
     std::vector<std::string> steps;
     for (const auto& step : report["steps"]) steps.push_back(step["step"]);
-    EXPECT_THAT(steps, ElementsAre("raster", "read back", "compute", "frame"));
+    EXPECT_THAT(steps, ElementsAre("raster", "transport", "compute", "frame"));
 }
 
 TEST_F(Render, ValuesThatAreNotFiniteAreCountedAndToldOf) {

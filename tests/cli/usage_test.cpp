@@ -104,6 +104,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{{"render", "@scene", "-o", "@/a.png", "--frames", "0"}, 2, "--frames: 0 is not in"},
         Refusal{{"render", "@scene", "-o", "@/a.png", "--lanes", "3"}, 2, "--lanes: '3' is none of 1, 4, 8, 16"},
         Refusal{{"render", "@scene", "-o", "@/a.png", "--transport", "air"}, 2, "--transport: 'air' is none of"},
+        Refusal{
+            {"render", "@scene", "-o", "@/a.png", "--transport", "gl-sharing"}, 1, "transport gl-sharing: no cl_khr"},
         Refusal{{"render", "@scene", "-o", "@/a.png", "--device", "no such thing"}, 2, "no such thing"},
         Refusal{{"render", "@scene", "-o", "@/a.png", "--gl", "metal"}, 2, "\"metal\""},
         Refusal{{"render", "@scene", "-o", "@/a.png", "--camera", "nobody"}, 2, "no camera \"nobody\""},

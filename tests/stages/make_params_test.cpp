@@ -128,6 +128,16 @@ TEST(MakeParams, TheFramesGeometryGoesThrough) {
     EXPECT_EQ(p.sum.firstRowPx, 0);
 }
 
+TEST(MakeParams, ThereIsNoConfidenceWithoutAHistory) {
+    // After a change of extent the tiles' confidence is of another picture, or of none.
+    Settings settings;
+    settings.accumulates = true;
+    FrameGeometry g = geometry();
+    EXPECT_EQ(makeParams(settings, g).temporal.usesConfidence, 1);
+    g.hasHistory = false;
+    EXPECT_EQ(makeParams(settings, g).temporal.usesConfidence, 0);
+}
+
 TEST(MakeParams, BlocksOfAMinifiedMapMayStickOut) {
     FrameGeometry g = geometry();
     g.rsmSizePx = 61;

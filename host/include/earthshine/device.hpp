@@ -1,6 +1,7 @@
 #pragma once
 // OpenCL devices: what is here, what matters to us about each, and which one to use.
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -69,6 +70,7 @@ struct DeviceOptions {
         kernelFolder;         ///< read kernel sources from here, not from the library; "" = $EARTHSHINE_KERNELS or none
     std::string cacheFolder;  ///< "" = $EARTHSHINE_CACHE, else $XDG_CACHE_HOME/earthshine, else ~/.cache/earthshine;
                               ///< "none" = off
+    std::vector<std::intptr_t> contextProperties;  ///< more for clCreateContext, in pairs; openForGl fills it
 };
 
 /// An open device: context, one queue, program cache. Shared by copies, which all belong to one thread at a time; the

@@ -11,6 +11,7 @@
 #include "earthshine/frame.hpp"
 #include "earthshine/gl.hpp"
 #include "earthshine/settings.hpp"
+#include "earthshine/transport.hpp"
 
 namespace earthshine {
 
@@ -45,6 +46,11 @@ public:
     /// 4096 bytes (as HostImage's is) are used in place where the device shares the host's memory. Throws InputError
     /// naming the image, camera or light that is not as frame.hpp says.
     void setFrame(const FrameInputs& frame);
+
+    /// Hands over a frame that is in the textures of the GL context that `transport` was opened for. Every run() brings
+    /// them over, and needs that context current; the transport, whose device this pipeline's is, and the textures stay
+    /// until the next setFrame(). Throws InputError or UsageError as the other.
+    void setFrame(Transport& transport, const GlFrame& frame, const Camera& camera, const std::vector<Light>& lights);
 
     /// Computes the outputs of the frame that was set, and waits. `progress`, if given, hears fractions in [0; 1].
     /// Throws UsageError for settings out of range, DeviceError if the device fails. Each run that ends well is the

@@ -101,9 +101,9 @@ struct Settings {
                                 ///< so 8 times without accumulate; depth: m a step
     float filterNormal = 0.3f;  ///< [0.001; 1000] - squared difference of unit normals at which a tap counts for
                                 ///< nothing (plane) or 1/e (depth)
-    float filterLuminance = 0.0f;  ///< [0; 1000] (standard deviations, about) - plane weights only: luminance
-                                   ///< difference at which a tap counts for nothing; 0 = any. Keeps contrast that no
-                                   ///< surface shows, and takes light away where few samples are bright (5 % at 8)
+    float filterLuminance = 0.0f;   ///< [0; 1000] (standard deviations, about) - plane weights only: luminance
+                                    ///< difference at which a tap counts for nothing; 0 = any. Keeps contrast that no
+                                    ///< surface shows, and takes light away where few samples are bright (5 % at 8)
     float filterFade = 1024.0f;     ///< [1; 1024] (frames) - history longer than this weakens the filter in proportion,
                                     ///< and a step twice as wide from half of it on; an iteration that counts for less
                                     ///< than a tenth is left out

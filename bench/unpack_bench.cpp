@@ -1,4 +1,4 @@
-// unpack and interleave: the doors between plain pixels and surfaces.
+// unpack, import_image and interleave: the doors between plain pixels and surfaces.
 
 #include <memory>
 
@@ -8,6 +8,7 @@
 #include "room_frame.hpp"
 #include "row.hpp"
 #include "run_options.hpp"
+#include "stages/import_image_stage.hpp"
 #include "stages/interleave_stage.hpp"
 #include "stages/unpack_stage.hpp"
 
@@ -34,6 +35,21 @@ Row unpack(const Variant& variant, Extent extent, PixelFormat format) {
                      .flops = perPixel * extent.widthPx * extent.heightPx}};
 }
 
+// bytes: the other API's image in, the surface out. Sanitised: min and max a channel.
+Row importImage(const Variant& variant, Extent extent) {
+    const Device device(runOptions().device, variant.options);
+    const HostImage pixels = toFloat(roomFrame(extent, kRsmSizePx).albedo.view());
+    const cl::Image2D image(device.impl().context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
+                            clImageFormat(PixelFormat::RGBA32F), std::size_t(extent.widthPx),
+                            std::size_t(extent.heightPx), 0, const_cast<std::byte*>(pixels.data()));
+    const Surface surface(device, PixelFormat::RGBA32F, extent);
+    const auto stage = std::make_shared<ImportImageStage>(device);
+    return {.device = device,
+            .run = launches(device, [=] { stage->enqueue(image, surface); }),
+            .work = {.bytes = double(pixels.sizeBytes() + surface.sizeBytes()),
+                     .flops = 3.0 * 2 * extent.widthPx * extent.heightPx}};
+}
+
 // bytes: color and depth in, 16 a pixel out. No arithmetic.
 Row interleave(const Variant& variant, Extent extent) {
     const Room room(variant, extent);
@@ -58,6 +74,7 @@ void addUnpackRows() {
     add("r32f", PixelFormat::R32F);
     add("rgba16f", PixelFormat::RGBA16F);
     add("rgba32f", PixelFormat::RGBA32F);
+    addRows("import_image", usualExtents(), "rgba32f", importImage);
     addRows("interleave", usualExtents(), "", interleave);
 }
 

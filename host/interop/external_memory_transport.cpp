@@ -113,15 +113,10 @@ ExternalMemoryTransport::Semaphore ExternalMemoryTransport::importSemaphore() {
         api().check("glImportSemaphoreFdEXT");
         exported.forGl.disown();
         device().checked("importing a semaphore", [&] {
-            const auto handle = reinterpret_cast<std::uintptr_t>(device().device());
-            const cl_semaphore_properties_khr properties[] = {CL_SEMAPHORE_TYPE_KHR,
-                                                              CL_SEMAPHORE_TYPE_BINARY_KHR,
+            // No list of devices: the context has one, and versions of the extension spell it differently.
+            const cl_semaphore_properties_khr properties[] = {CL_SEMAPHORE_TYPE_KHR, CL_SEMAPHORE_TYPE_BINARY_KHR,
                                                               CL_SEMAPHORE_HANDLE_OPAQUE_FD_KHR,
-                                                              cl_semaphore_properties_khr(exported.forCl.get()),
-                                                              CL_DEVICE_HANDLE_LIST_KHR,
-                                                              handle,
-                                                              CL_DEVICE_HANDLE_LIST_END_KHR,
-                                                              0};
+                                                              cl_semaphore_properties_khr(exported.forCl.get()), 0};
             cl_int code = CL_SUCCESS;
             semaphore.cl = cl_.createSemaphore(device().context(), properties, &code);
             checkCl(code, "clCreateSemaphoreWithPropertiesKHR");

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
+#include <mutex>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -74,7 +75,6 @@ std::string text(const DeviceUuid& uuid) {
 
 // X(name without "vk"); looked up in the loader's library, with the instance, with the device.
 #define EARTHSHINE_VK_INSTANCE(X)                   \
-    X(DestroyInstance)                              \
     X(EnumeratePhysicalDevices)                     \
     X(GetPhysicalDeviceProperties2)                 \
     X(GetPhysicalDeviceMemoryProperties)            \
@@ -128,7 +128,6 @@ struct VulkanExporter::Impl {
         for (const auto& [id, owned] : images) release(owned);
         for (const VkSemaphore semaphore : semaphores) DestroySemaphore(device, semaphore, nullptr);
         if (device) DestroyDevice(device, nullptr);
-        if (instance) DestroyInstance(instance, nullptr);
     }
     void release(const Owned& owned) const {
         if (owned.image) DestroyImage(device, owned.image, nullptr);
@@ -157,7 +156,13 @@ struct VulkanExporter::Impl {
         VkInstanceCreateInfo info{};
         info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
         info.pApplicationInfo = &application;
-        check(createInstance(&info, nullptr, &instance), "vkCreateInstance");
+        // One for the process, never destroyed: on NVIDIA's driver, whose OpenGL shares libraries with its Vulkan,
+        // every GL call after the instance's end finds no context (580.159, EGL's device platform).
+        static std::mutex mutex;
+        static VkInstance kept = nullptr;
+        const std::lock_guard lock(mutex);
+        if (!kept) check(createInstance(&info, nullptr, &kept), "vkCreateInstance");
+        instance = kept;
 #define EARTHSHINE_VK_LOAD(NAME)                                       \
     NAME = reinterpret_cast<PFN_vk##NAME>(find(instance, "vk" #NAME)); \
     if (!NAME) throw DeviceError("this Vulkan has no vk" #NAME ": 1.1 is needed");

@@ -130,8 +130,7 @@ cl_semaphore_khr CL_API_CALL createSemaphore(cl_context, const cl_semaphore_prop
         return nullptr;
     }
     if (p[0] != CL_SEMAPHORE_TYPE_KHR || p[1] != CL_SEMAPHORE_TYPE_BINARY_KHR ||
-        p[2] != CL_SEMAPHORE_HANDLE_OPAQUE_FD_KHR || p[4] != CL_DEVICE_HANDLE_LIST_KHR ||
-        p[6] != CL_DEVICE_HANDLE_LIST_END_KHR || p[7] != 0) {
+        p[2] != CL_SEMAPHORE_HANDLE_OPAQUE_FD_KHR || p[4] != 0) {
         *codeOut = CL_INVALID_PROPERTY;
         return nullptr;
     }

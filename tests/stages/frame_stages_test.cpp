@@ -78,8 +78,9 @@ Expected expectedOf(const FrameImages& images, const Settings& settings, int fra
         const float own = frame.lights[l].gatherRadiusUv;
         const auto radiusUv = double(own > 0.0f ? own : settings.radiusUv);
         if (const int factor = settings.rsmMinify; factor > 1) {
-            texels = reference::minified(texels, size, factor, int(l),
-                                         std::uint32_t(settings.animatesNoise ? frameIndex : 0));
+            // Frames pick other texels, but for the full sum, which is the same in all.
+            const bool picksAnew = settings.animatesNoise && settings.estimator == Estimator::Disk;
+            texels = reference::minified(texels, size, factor, int(l), std::uint32_t(picksAnew ? frameIndex : 0));
             const int blocks = (size + factor - 1) / factor;
             mapScale = double(size) / (blocks * factor);
             size = blocks;

@@ -180,18 +180,20 @@ __kernel void temporal(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE
             h.irradiance = load3(historyIrradiance, px);
             h.length = load1(historyLength, px);
             if (params.keepsMoment) h.moment = load1(historyMoment, px);
-        } else {
-            addTaps(&h, HISTORY_ARGS, &params, &plane, isSurface, left, top, 2, 1.0f);
         }
-        vmask isLost = isSurface & (h.weight < 0.01f);
-        if (anyLane(isLost)) {
-            History rescued = {0.0f, zero3, 0.0f, 0.0f};
-            addTaps(&rescued, HISTORY_ARGS, &params, &plane, isLost, toVint(floor(fx + 0.5f)) - 1,
-                    toVint(floor(fy + 0.5f)) - 1, 3, 2.0f);
-            h.weight = vselect(isLost, rescued.weight, h.weight);
-            h.irradiance = select3(isLost, rescued.irradiance, h.irradiance);
-            h.length = vselect(isLost, rescued.length, h.length);
-            h.moment = vselect(isLost, rescued.moment, h.moment);
+        // First the four around; then, for what they know nothing of, the nine.
+        for (int side = anyLane(moves) ? 2 : 3; side <= 3; ++side) {
+            vmask isLost = isSurface & (h.weight < 0.01f);
+            if (!anyLane(isLost)) break;
+            History found = {0.0f, zero3, 0.0f, 0.0f};
+            float rounding = side == 2 ? 0.0f : 0.5f;
+            int back = side - 2;
+            addTaps(&found, HISTORY_ARGS, &params, &plane, isLost, toVint(floor(fx + rounding)) - back,
+                    toVint(floor(fy + rounding)) - back, side, (float)(side - 1));
+            h.weight = vselect(isLost, found.weight, h.weight);
+            h.irradiance = select3(isLost, found.irradiance, h.irradiance);
+            h.length = vselect(isLost, found.length, h.length);
+            h.moment = vselect(isLost, found.moment, h.moment);
         }
         if (params.usesConfidence) h.length *= confidenceAt(confidence, outIrradianceLayout, left, top);
     }

@@ -163,7 +163,7 @@ MotionResult measureScene(const QualityScene& scene, const QualityList& list, co
             if (i > 0) row.indirectMs.ms.push_back(indirectMs(runner->pipeline.stageTimes()));
             if (isContinuous)
                 row.flicker.ms.push_back(changeOf(picture, runner->before, images, motion, depthBefore).ratio());
-            if (hasJumped) {
+            if (hasJumped && i < arguments.jumpFrame + kFramesAfterJump) {
                 if (!runner->fresh) runner->fresh.emplace(device);
                 runner->fresh->setFrame(images.inputs());
                 runner->fresh->run(row.setting->settings);
@@ -276,8 +276,10 @@ void addMotion(Options& program) {
     options.option("--orbit", "DEG", "0.5", "degrees a frame", [arguments](const std::string& text) {
         arguments->orbitDegPerFrame = parseFloat(text, -90.0, 90.0);
     });
-    options.option("--jump", "FRAME", "", "the sun's azimuth jumps by 60 degrees at this frame [it stays]",
-                   [arguments](const std::string& text) { arguments->jumpFrame = parseInt(text, 1, 10000); });
+    options.option(
+        "--jump", "FRAME", "",
+        "the sun's azimuth jumps by 60 degrees at this frame; a scene without a sun gets one then [it stays]",
+        [arguments](const std::string& text) { arguments->jumpFrame = parseInt(text, 1, 10000); });
     addDeviceOptions(options, arguments->device);
 }
 

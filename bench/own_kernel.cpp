@@ -1,8 +1,5 @@
 #include "own_kernel.hpp"
 
-#include <chrono>
-#include <utility>
-
 #include "earthshine/error.hpp"
 
 namespace earthshine::bench {
@@ -16,16 +13,8 @@ Kernel ownKernel(const Device& device, const std::string& name) {
 void enqueueCopy(const Device& device, const cl::Buffer& from, const cl::Buffer& to, std::size_t bytes) {
     Device::Impl& impl = device.impl();
     impl.checked("copying a buffer", [&] {
-        Launch launch{"copy", {}};
-        if (impl.timesByClock) impl.queue.finish();
-        const auto start = std::chrono::steady_clock::now();
-        impl.queue.enqueueCopyBuffer(from, to, 0, 0, bytes, nullptr, &launch.event);
-        if (impl.timesByClock) {
-            impl.queue.finish();
-            launch.clockMs =
-                std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-        }
-        impl.launches.push_back(std::move(launch));
+        impl.record("copy",
+                    [&](cl::Event* event) { impl.queue.enqueueCopyBuffer(from, to, 0, 0, bytes, nullptr, event); });
         return 0;
     });
 }

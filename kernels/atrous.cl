@@ -67,7 +67,8 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
     // The distance of q's point from p's plane is n.(x_q - x_p); with x = origin + depth ray, both linear in the pixel, it
     // is depth_q slope + offset, both linear in the tap (i, j). Here in units of the reach one step away.
     const ViewRays* rays = &params.cameraRays;
-    vfloat3 ray = mad3(toVfloat(px.x + laneIndex()), splat3(rays->rayDx), splat3(rays->ray + (float)px.y * rays->rayDy));
+    vfloat3 ray =
+        mad3(toVfloat(px.x + laneIndex()), splat3(rays->rayDx), splat3(rays->ray + (float)px.y * rays->rayDy));
     vfloat along = dot3(normal, ray);
     vfloat reach = params.depthTolerance * vmad(depth, params.footprintPerM, params.footprintM);
     reach *= max(YOUNG_FRAMES * inverseLength, 1.0f);

@@ -1,7 +1,9 @@
 #pragma once
 // An open device as compute/, stages/ and pipeline/ see it.
 
+#include <chrono>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compute/cl.hpp"
@@ -50,6 +52,20 @@ struct Device::Impl {
         checked("writing a table",
                 [&] { return queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, elements.data()); });
         return buffer;
+    }
+    /// Runs `enqueue(cl::Event*)`, which enqueues one command, and keeps its time as a launch of this name.
+    template <class Enqueue>
+    void record(std::string name, Enqueue&& enqueue) {
+        Launch launch{std::move(name), {}};
+        if (timesByClock) queue.finish();
+        const auto start = std::chrono::steady_clock::now();
+        enqueue(&launch.event);
+        if (timesByClock) {
+            queue.finish();
+            launch.clockMs =
+                std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        }
+        launches.push_back(std::move(launch));
     }
     /// Waits for all that was enqueued.
     void finish() {

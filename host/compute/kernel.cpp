@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "compute/kernel_source.hpp"
@@ -86,16 +85,9 @@ void Kernel::enqueueItems(std::size_t x, std::size_t y) {
         const cl::NDRange local(localSize_[0], localSize_[1]);
         const auto roundUp = [](std::size_t n, std::size_t to) { return (n + to - 1) / to * to; };
         const cl::NDRange global(roundUp(x, localSize_[0]), roundUp(y, localSize_[1]));
-        Launch launch{name_, {}};
-        if (impl.timesByClock) impl.queue.finish();
-        const auto start = std::chrono::steady_clock::now();
-        impl.queue.enqueueNDRangeKernel(kernel_, cl::NullRange, global, local, nullptr, &launch.event);
-        if (impl.timesByClock) {
-            impl.queue.finish();
-            launch.clockMs =
-                std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-        }
-        impl.launches.push_back(std::move(launch));
+        impl.record(name_, [&](cl::Event* event) {
+            impl.queue.enqueueNDRangeKernel(kernel_, cl::NullRange, global, local, nullptr, event);
+        });
         return 0;
     });
 }

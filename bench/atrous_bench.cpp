@@ -1,6 +1,7 @@
 // atrous: passes of the filter, each with all its taps: history of one frame, which fades nothing (kernels/atrous.cl).
 
 #include <memory>
+#include <string>
 
 #include "benches.hpp"
 #include "flops.hpp"
@@ -25,23 +26,25 @@ constexpr double kTap =
     2 + kSub3 + (kDot3 + 1) + kFma + (kLuminance + 1) + (1 + 1 + kFma) + (1 + kFma + 1) + 1 + 1 + 1 + kMad3;
 
 // bytes: depth and out at every pixel; irradiance, normals and length where there is no sky.
-Row atrous(const Variant& variant, Extent extent, FilterKernel kernel, std::size_t pass) {
+Row atrous(const Variant& variant, Extent extent, FilterKernel kernel, std::size_t pass, bool isPair = false) {
     const Room room(variant, extent);
     const Surface in = room.noisy(), out = room.three(), length = room.constant(1.0f);
     Settings settings = settingsOf(Preset::Balanced);
     settings.filterKernel = kernel;
     const AtrousParams params = room.params(settings, true).filterPasses.at(pass);
-    const int taps = (2 * params.radiusX + 1) * (2 * params.radiusY + 1) - 1;
-    const int directions = (params.radiusX > 0) + (params.radiusY > 0);
+    const int taps = isPair ? 8 : (2 * params.radiusX + 1) * (2 * params.radiusY + 1) - 1;
+    const int directions = isPair ? 2 : (params.radiusX > 0) + (params.radiusY > 0);
+    const int pixels = isPair ? 2 : 1;  // a pair has all that a pixel needs twice
     const auto stage = std::make_shared<AtrousStage>(room.device);
     return {.device = room.device,
             .run = launches(room.device,
                             [=] {
                                 const FrameSurfaces& i = room.inputs;
-                                stage->enqueue({in, i.normalWs, i.depth, length, Surface(), out}, params);
+                                const AtrousStage::Images images{in, i.normalWs, i.depth, length, Surface(), out};
+                                isPair ? stage->enqueuePair(images, params) : stage->enqueue(images, params);
                             }),
             .work = {.bytes = room.bytes({room.inputs.depth, out}, {in, room.inputs.normalWs, length}),
-                     .flops = (kPixel + directions * kDirection + taps * kTap) * room.seenPixels}};
+                     .flops = (pixels * kPixel + directions * kDirection + taps * kTap) * room.seenPixels}};
 }
 
 }  // namespace
@@ -51,6 +54,11 @@ void addAtrousRows() {
         addRows("atrous", usualExtents(), setting,
                 [=](const Variant& variant, Extent extent) { return atrous(variant, extent, kernel, pass); });
     };
+    for (const std::size_t iteration : {0u, 2u})
+        addRows("atrous_pair", usualExtents(), "step" + std::to_string(1 << iteration),
+                [=](const Variant& variant, Extent extent) {
+                    return atrous(variant, extent, FilterKernel::Separable, 2 * iteration, true);
+                });
     add("row_step1", FilterKernel::Separable, 0);
     add("column_step1", FilterKernel::Separable, 1);
     add("row_step4", FilterKernel::Separable, 4);

@@ -252,7 +252,7 @@ private:
 
     Candidate chooseWay() {
         std::vector<Candidate> candidates;
-        for (const char* storage : {"image", "planar"}) {
+        for (const char* storage : kStorageNames) {
             if (std::string_view(storage) == "image" && !caps_.images) continue;
             for (int lanes : {1, 4, 8, 16}) {
                 Candidate candidate;

@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "compute/tuning.hpp"
 #include "earthshine/error.hpp"
 
 namespace earthshine::bench {
@@ -20,14 +21,15 @@ Variant naive() {
     v.options.lanes = 1;
     v.options.storage = "image";
     v.options.rsmRecords = 0;
+    v.options.filterPairs = 0;
     return v;
 }
 
 std::vector<Variant> everyVariant(const DeviceCaps& caps) {
     std::vector<Variant> variants;
     for (const int lanes : {1, 4, 8, 16})
-        for (const char* storage : {"image", "planar"}) {
-            if (!caps.images && std::string(storage) == "image") continue;
+        for (const std::string storage : kStorageNames) {
+            if (!caps.images && storage == "image") continue;
             Variant v = tuned();
             v.name = fmt::format("lanes{}_{}", lanes, storage);
             v.options.lanes = lanes;

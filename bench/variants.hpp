@@ -15,7 +15,8 @@ struct Variant {
 
 /// The device's defaults.
 Variant tuned();
-/// One pixel a work-item, images, the RSM's three maps: as such kernels are usually written.
+/// One pixel a work-item, images, the RSM's three maps, a launch a pass of the filter: as such kernels are usually
+/// written.
 Variant naive();
 /// Every number of lanes x storage that the device can do.
 std::vector<Variant> everyVariant(const DeviceCaps& caps);

@@ -1,8 +1,8 @@
 // atrous: one pass of the edge-avoiding a-trous filter: a mean over taps that lie on the same surface.
 //   out(p) = sum_q k_q w(p, q) in(q) / sum_q k_q w(p, q),   q = p + stepPx (i, j) of each tap
 //   Dammertz et al. 2010. 5 x 5 and 3 x 3 are B-splines; the separable pair runs a row and a column one after the other.
-//   w = fade max(0, 1 - t)^2,   t = (plane / reach)^2 + |n_p - n_q|^2 / normalTolerance + luminance (below)
-//   plane: distance of q's point from p's plane; reach: depthTolerance times the way to q on the surface, so that neither
+//   w = fade max(0, 1 - t)^2,   t = (plane / reach)^2 + 2 (1 - n_p.n_q) / normalTolerance + luminance (below)
+//   2 (1 - n_p.n_q) = |n_p - n_q|^2 of unit normals. plane: distance of q's point from p's plane; reach: depthTolerance times the way to q on the surface, so that neither
 //   the scene's scale nor the step matters. All of it is polynomial: no transcendental a tap.
 //   fade = min(1, fadeFrames / length): where history is long there is little noise left, and blur would be all error.
 //   Below SMALLEST_FADE it is none, and where all lanes have none, neighbours are not read.
@@ -11,7 +11,7 @@
 //   luminance: (l_p - l_q)^2 / (luminanceTolerance^2 variance of p's mean), coming in from 3 to 4 frames
 //   (Schied et al. 2017); a hundredth of l_p is never an edge, nor could 32 bits tell its variance.
 //   ATROUS_WEIGHTS_DEPTH is the field's usual weight, for comparison: e^(-|z_p - z_q| max(1/4, n_p.v) / (depthTolerance
-//   |(i, j)|)) e^(-|n_p - n_q|^2 / normalTolerance), v towards the eye.
+//   |(i, j)|)) e^(-2 (1 - n_p.n_q) / normalTolerance), v towards the eye.
 //   in   inIrradiance   lx
 //   in   inNormalWs, inDepth   unit; m, 0 on sky
 //   in   inLength       frames of history
@@ -19,13 +19,9 @@
 //   out  outIrradiance  lx, >= 0, finite; 0 on sky
 //   Work 2D, one item per LANES pixels of a row, any local size; items past the edge return.
 
-#include "atrous_params.h"
-#include "geometry.clh"
+#include "atrous.clh"
 #include "math.clh"
 #include "surface.clh"
-
-#define SMALLEST_FADE 0.1f
-#define YOUNG_FRAMES 8.0f
 
 // Item i's row, of planes: those that are a multiple of `step` apart follow one another, so that a column's taps are rows
 // that were just read, however far apart they lie (at step 4: 0.7 of the time on a CPU). Images keep blocks together.
@@ -47,7 +43,7 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
     Pixel px = itemPixel();
     if (isOutside(px, outIrradianceLayout)) return;
     int width = outIrradianceLayout.widthPx, height = outIrradianceLayout.heightPx;
-    if (STORAGE_PLANAR && params.radiusY > 0 && params.stepPx > 1) px.y = rowOf(px.y, height, params.stepPx);
+    if (STORAGE == STORAGE_PLANAR && params.radiusY > 0 && params.stepPx > 1) px.y = rowOf(px.y, height, params.stepPx);
     vfloat depth = load1(inDepth, px);
     vmask isSurface = depth > 0.0f;
     if (!anyLane(isSurface)) {
@@ -56,39 +52,27 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
     }
     vfloat3 irradiance = load3(inIrradiance, px);
     vfloat length = load1(inLength, px), inverseLength = 1.0f / max(length, 1.0f);
-    vfloat fade = min(params.fadeFrames * inverseLength, 1.0f);
-    fade = vselect(fade < SMALLEST_FADE, 0.0f, fade);
-    if (!anyLane(isSurface & (fade > 0.0f))) {
+    if (!anyLane(isSurface & (fadeOf(&params, inverseLength) > 0.0f))) {
         store3(outIrradiance, px, irradiance);  // 0 on sky already
         return;
     }
-    vfloat3 normal = load3(inNormalWs, px);
-
-    // The distance of q's point from p's plane is n.(x_q - x_p); with x = origin + depth ray, both linear in the pixel, it
-    // is depth_q slope + offset, both linear in the tap (i, j). Here in units of the reach one step away.
     const ViewRays* rays = &params.cameraRays;
-    vfloat3 ray =
-        mad3(toVfloat(px.x + laneIndex()), splat3(rays->rayDx), splat3(rays->ray + (float)px.y * rays->rayDy));
-    vfloat along = dot3(normal, ray);
-    vfloat reach = params.depthTolerance * vmad(depth, params.footprintPerM, params.footprintM);
-    reach *= max(YOUNG_FRAMES * inverseLength, 1.0f);
-    vfloat inverseReach = 1.0f / max(reach, 1e-30f);
-    vfloat slope = along * inverseReach * (1.0f / (float)params.stepPx), offset = -depth * slope;
+    vfloat3 normal = load3(inNormalWs, px);
+    FilterPoint p = filterPoint(&params, px, depth, normal, inverseLength);
+    vfloat slope = p.slope, offset = -depth * slope;
     vfloat slopeX = 0.0f, slopeY = 0.0f, offsetX = 0.0f, offsetY = 0.0f;
     if (params.radiusX > 0) {
-        slopeX = inverseReach * dot3(normal, splat3(rays->rayDx));
-        offsetX = inverseReach * dot3(normal, splat3(rays->originDx));
+        slopeX = growth(&p, rays->rayDx);
+        offsetX = growth(&p, rays->originDx);
         slope -= (float)params.radiusX * slopeX;
         offset -= (float)params.radiusX * offsetX;
     }
     if (params.radiusY > 0) {
-        slopeY = inverseReach * dot3(normal, splat3(rays->rayDy));
-        offsetY = inverseReach * dot3(normal, splat3(rays->originDy));
+        slopeY = growth(&p, rays->rayDy);
+        offsetY = growth(&p, rays->originDy);
         slope -= (float)params.radiusY * slopeY;
         offset -= (float)params.radiusY * offsetY;
     }
-
-    float inverseNormal = 1.0f / params.normalTolerance;
     vfloat l = luminance(irradiance), inverseVariance = 0.0f;
     if (params.luminanceTolerance > 0.0f) {
         vfloat variance = max(load1(inMoment, px) - l * l, 0.0f) * inverseLength;
@@ -96,7 +80,10 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
         inverseVariance = min(max(length - 3.0f, 0.0f), 1.0f) / (range + 1e-4f * l * l + 1e-30f);
     }
     vfloat cosine = 1.0f;
-    if (params.weights == ATROUS_WEIGHTS_DEPTH) cosine = max(-along * rsqrt(dot3(ray, ray)), 0.25f);
+    if (params.weights == ATROUS_WEIGHTS_DEPTH) {
+        vfloat3 ray = viewRay(&params, px);
+        cosine = max(-dot3(normal, ray) * rsqrt(dot3(ray, ray)), 0.25f);
+    }
 
     int spanPx = params.radiusX * params.stepPx;
     bool isInner = px.x >= spanPx && px.x + LANES + spanPx <= width;
@@ -111,21 +98,18 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
             if ((i == 0 && j == 0) || y < 0 || y >= height || x + LANES <= 0 || x >= width) continue;
             float inverseWay2 = 1.0f / (float)(i * i + j * j);
             vfloat tapDepth = loadFrom1(inDepth, x, y);
-            vfloat3 tap = loadFrom3(inIrradiance, x, y);
-            vfloat3 turn = sub3(loadFrom3(inNormalWs, x, y), normal);
-            vfloat turned = dot3(turn, turn) * inverseNormal;
+            vfloat3 tap = loadFrom3(inIrradiance, x, y), tapNormal = loadFrom3(inNormalWs, x, y);
             vmask isThere = tapDepth > 0.0f;
             if (!isInner) isThere &= (x + laneIndex() >= 0) & (x + laneIndex() < width);
             vfloat weight;
             if (params.weights == ATROUS_WEIGHTS_PLANE) {
-                vfloat plane = vmad(tapDepth, slopeI, offsetI);
+                vfloat near = nearness(&params, &p, slopeI, offsetI, inverseWay2, tapDepth, tapNormal);
                 vfloat dl = luminance(tap) - l;
-                vfloat near = vmad(plane * plane, -inverseWay2, 1.0f - turned);  // 1 - t
                 near = max(vmad(-dl * dl, inverseVariance, near), 0.0f);
                 weight = near * near;
             } else {
                 float inverseWay = sqrt(inverseWay2) / params.depthTolerance;
-                weight = es_exp(-fabs(tapDepth - depth) * cosine * inverseWay - turned);
+                weight = es_exp(-fabs(tapDepth - depth) * cosine * inverseWay + likeness(&params, &p, tapNormal) - 1.0f);
             }
             weight = vselect(isThere, shareJ * shareOf(&params, i, params.radiusX) * weight, 0.0f);
             sumWeights += weight;
@@ -133,7 +117,7 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
         }
     }
     float centre = shareOf(&params, 0, params.radiusX) * shareOf(&params, 0, params.radiusY);
-    sumWeights = vmad(fade, sumWeights, centre);
-    sum = mad3(fade, sum, scale3(centre, irradiance));
+    sumWeights = vmad(p.fade, sumWeights, centre);
+    sum = mad3(p.fade, sum, scale3(centre, irradiance));
     store3(outIrradiance, px, select3(isSurface, scale3(1.0f / sumWeights, sum), make3(0.0f, 0.0f, 0.0f)));
 }

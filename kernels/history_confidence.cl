@@ -16,19 +16,25 @@ static float confidenceOf(float2 sums, const HistoryCheckParams* params) {
     return clamp((params->droppedAbove - ratio) / (params->droppedAbove - params->keptBelow), 0.0f, 1.0f);
 }
 
+// The sums of a tile's rows: loads that wait for nothing, all under way together.
+static float2 tileSums(__global const float2* restrict rows, const HistoryCheckParams* params, int i, int j) {
+    float2 sums = (float2)(0.0f, 0.0f);
+    if (i < 0 || i >= params->columns) return sums;
+#pragma unroll
+    for (int row = 0; row < CONFIDENCE_TILE_PX; ++row) {
+        int y = j * CONFIDENCE_TILE_PX + row;
+        float2 own = rows[clamp(y, 0, params->heightPx - 1) * params->columns + i];
+        if (y >= 0 && y < params->heightPx) sums += own;
+    }
+    return sums;
+}
+
 __kernel void history_confidence(__global const float2* restrict inSums, __global float* restrict outConfidence,
                                  const HistoryCheckParams params) {
     int i = (int)get_global_id(0), j = (int)get_global_id(1);
     if (i >= params.columns || j * CONFIDENCE_TILE_PX >= params.heightPx) return;
-    float2 own = (float2)(0.0f, 0.0f), around = own;
-    int top = j * CONFIDENCE_TILE_PX, bottom = top + CONFIDENCE_TILE_PX;
-    int first = max(top - CONFIDENCE_TILE_PX, 0), last = min(bottom + CONFIDENCE_TILE_PX, params.heightPx) - 1;
-    for (int y = first; y <= last; ++y) {
-        for (int x = max(i - 1, 0); x <= min(i + 1, params.columns - 1); ++x) {
-            float2 sums = inSums[y * params.columns + x];
-            around += sums;
-            if (x == i && y >= top && y < bottom) own += sums;
-        }
-    }
+    float2 own = tileSums(inSums, &params, i, j), around = own;
+    for (int tile = 0; tile < 9; ++tile)
+        if (tile != 4) around += tileSums(inSums, &params, i + tile % 3 - 1, j + tile / 3 - 1);
     outConfidence[j * params.columns + i] = min(confidenceOf(own, &params), confidenceOf(around, &params));
 }

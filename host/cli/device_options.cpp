@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "compute/tuning.hpp"
 #include "earthshine/log.hpp"
 
 namespace earthshine::cli {
@@ -20,16 +21,19 @@ void addDeviceOptions(Options& options, DeviceArguments& arguments) {
                        static constexpr const char* kNames[] = {"1", "4", "8", "16"};
                        o.lanes = std::stoi(kNames[parseChoice(text, kNames)]);
                    });
-    options.option("--storage", "image|planar", "", "how surfaces are kept [the tuning table's]",
-                   [&o](const std::string& text) {
-                       static constexpr const char* kNames[] = {"image", "planar"};
-                       o.storage = kNames[parseChoice(text, kNames)];
-                   });
+    options.option("--storage", "image|planar|packed", "", "how surfaces are kept [the tuning table's]",
+                   [&o](const std::string& text) { o.storage = kStorageNames[parseChoice(text, kStorageNames)]; });
     options.option("--rsm-records", "on|off", "",
                    "gather from packed texels, not from the RSM's images [the tuning table's]",
                    [&o](const std::string& text) {
                        static constexpr const char* kNames[] = {"off", "on"};
                        o.rsmRecords = parseChoice(text, kNames);
+                   });
+    options.option("--filter-pairs", "on|off", "",
+                   "a row and a column of the separable filter in one launch [the tuning table's]",
+                   [&o](const std::string& text) {
+                       static constexpr const char* kNames[] = {"off", "on"};
+                       o.filterPairs = parseChoice(text, kNames);
                    });
     options.option("--local-size", "WxH", "", "work-items a group of every kernel [the tuning table's]",
                    [&o](const std::string& text) {

@@ -7,6 +7,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/report.hpp"
+#include "compute/tuning.hpp"
 #include "earthshine/device.hpp"
 #include "earthshine/error.hpp"
 #include "image/json_text.hpp"
@@ -41,8 +42,7 @@ std::string describe(const DeviceCaps& caps, bool chosen) {
                                               caps.maxImageSizePx[0], caps.maxImageSizePx[1]));
     line("transports", fmt::format("{}", fmt::join(caps.transports, " ")));
     const Tuning& t = caps.tuning;
-    line("tuning", fmt::format("lanes {}, {} storage, {}, groups of {}x{}", t.lanes,
-                               t.storage == Storage::Image ? "image" : "planar",
+    line("tuning", fmt::format("lanes {}, {} storage, {}, groups of {}x{}", t.lanes, storageName(t.storage),
                                t.rsmRecords ? "packed RSM" : "RSM images", t.localSizePx[0], t.localSizePx[1]));
     for (const Tuning::Group& group : t.groups)
         line("", fmt::format("{:<18} {}x{}", group.kernel, group.localSizePx[0], group.localSizePx[1]));

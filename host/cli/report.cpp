@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/setting_options.hpp"
+#include "compute/tuning.hpp"
 
 namespace earthshine::cli {
 
@@ -16,9 +17,13 @@ Json tuningJson(const Tuning& tuning) {
     Json groups = Json::object();
     for (const Tuning::Group& group : tuning.groups)
         groups[group.kernel] = {group.localSizePx[0], group.localSizePx[1]};
-    return {{"lanes", tuning.lanes},           {"storage", tuning.storage == Storage::Image ? "image" : "planar"},
-            {"rsmRecords", tuning.rsmRecords}, {"localSize", {tuning.localSizePx[0], tuning.localSizePx[1]}},
-            {"kernelLocalSizes", groups},      {"reason", tuning.reason}};
+    return {{"lanes", tuning.lanes},
+            {"storage", storageName(tuning.storage)},
+            {"rsmRecords", tuning.rsmRecords},
+            {"filterPairs", tuning.filterPairs},
+            {"localSize", {tuning.localSizePx[0], tuning.localSizePx[1]}},
+            {"kernelLocalSizes", groups},
+            {"reason", tuning.reason}};
 }
 
 Json seriesJson(const char* kind, const std::string& name, const Series& series) {

@@ -14,10 +14,12 @@ namespace earthshine {
 
 namespace {
 
+static_assert(int(Storage::Image) == STORAGE_IMAGE && int(Storage::Planar) == STORAGE_PLANAR &&
+              int(Storage::Packed) == STORAGE_PACKED);
+
 std::string buildOptions(const DeviceCaps& caps, const Tuning& tuning) {
-    return fmt::format("-cl-std=CL1.2 -DES_DIALECT_CL -DLANES={} -DSTORAGE_PLANAR={} -DRSM_RECORDS={} -DES_FMA={}",
-                       tuning.lanes, tuning.storage == Storage::Planar ? 1 : 0, tuning.rsmRecords ? 1 : 0,
-                       caps.fusesMultiplyAdd ? 1 : 0);
+    return fmt::format("-cl-std=CL1.2 -DES_DIALECT_CL -DLANES={} -DSTORAGE={} -DRSM_RECORDS={} -DES_FMA={}",
+                       tuning.lanes, int(tuning.storage), tuning.rsmRecords ? 1 : 0, caps.fusesMultiplyAdd ? 1 : 0);
 }
 
 }  // namespace

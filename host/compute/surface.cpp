@@ -32,8 +32,10 @@ Surface::Surface(const Device& device, PixelFormat format, Extent extent) : form
     Device::Impl& impl = device.impl();
     const std::string what =
         fmt::format("a {} surface of {} x {}", formatName(format), extent.widthPx, extent.heightPx);
-    if (impl.tuning.storage == Storage::Planar) {
-        sizeBytes_ = (planeFloats * std::size_t(channels) + 2 * SURFACE_GUARD) * sizeof(float);
+    if (impl.tuning.storage != Storage::Image) {
+        sizeBytes_ = impl.tuning.storage == Storage::Planar
+                         ? (planeFloats * std::size_t(channels) + 2 * SURFACE_GUARD) * sizeof(float)
+                         : (planeFloats + 2 * SURFACE_GUARD) * sizeof(float) * (channels == 1 ? 1 : 2);
         memory_ = impl.checked(what, [&] {
             const cl::Buffer buffer(impl.context, CL_MEM_READ_WRITE, sizeBytes_);
             // Padding and guards are read, if only to be masked: they must be finite.

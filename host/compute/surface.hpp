@@ -7,8 +7,9 @@
 
 namespace earthshine {
 
-/// One or three numbers a pixel in the device's storage: an image of the format, or 32-bit float planes whatever the
-/// format, between two guards of SURFACE_GUARD floats. Shared by copies. Planes are 0 at birth, an image is undefined.
+/// One or three numbers a pixel in the device's storage: an image of the format, or, whatever the format, planes of
+/// 32-bit floats between two guards of SURFACE_GUARD floats, or packed pixels of 4 or 8 bytes between two of
+/// SURFACE_GUARD pixels. Shared by copies. Planes and packed pixels are 0 at birth, an image is undefined.
 class Surface {
 public:
     Surface() = default;

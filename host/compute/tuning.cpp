@@ -23,7 +23,13 @@ void clampGroup(int (&localSizePx)[2], std::size_t maxItems) {
 }  // namespace
 
 const char* storageName(Storage storage) {
-    return storage == Storage::Image ? "image" : "planar";
+    return kStorageNames[int(storage)];
+}
+
+std::optional<Storage> storageOf(std::string_view name) {
+    const auto* const at = std::find(std::begin(kStorageNames), std::end(kStorageNames), name);
+    if (at == std::end(kStorageNames)) return std::nullopt;
+    return Storage(at - std::begin(kStorageNames));
 }
 
 Tuning defaultTuning(const DeviceCaps& caps, const std::string& file) {
@@ -34,9 +40,10 @@ Tuning defaultTuning(const DeviceCaps& caps, const std::string& file) {
     const bool wantsImages = t.storage == Storage::Image;
     if (wantsImages && !hasImages) t.storage = Storage::Planar;
     t.reason += fmt::format(": {} pixel{} a work-item, {}", t.lanes, t.lanes == 1 ? "" : "s",
-                            t.storage == Storage::Image ? "images"
-                            : !wantsImages              ? "planes"
-                                                        : "planes for want of images");
+                            t.storage == Storage::Image    ? "images"
+                            : t.storage == Storage::Packed ? "packed pixels"
+                            : !wantsImages                 ? "planes"
+                                                           : "planes for want of images");
     clampGroup(t.localSizePx, caps.maxWorkGroupSize);
     for (Tuning::Group& group : t.groups) clampGroup(group.localSizePx, caps.maxWorkGroupSize);
     return t;
@@ -51,14 +58,17 @@ Tuning tuningFor(const DeviceCaps& caps, const DeviceOptions& options) {
         t.reason = "asked for";
     }
     if (!options.storage.empty()) {
-        if (options.storage != "image" && options.storage != "planar")
-            throw UsageError(fmt::format("storage: '{}' is neither image nor planar", options.storage));
-        t.storage = options.storage == "image" ? Storage::Image : Storage::Planar;
+        const std::optional<Storage> storage = storageOf(options.storage);
+        if (!storage)
+            throw UsageError(
+                fmt::format("storage: '{}' is none of {}", options.storage, fmt::join(kStorageNames, ", ")));
+        t.storage = *storage;
         t.reason = "asked for";
     }
     if (t.storage == Storage::Image && !caps.images)
-        throw UsageError(fmt::format("storage: \"{}\" has no images; use planar", caps.name));
+        throw UsageError(fmt::format("storage: \"{}\" has no images; use planar or packed", caps.name));
     if (options.rsmRecords >= 0) t.rsmRecords = options.rsmRecords != 0;
+    if (options.filterPairs >= 0) t.filterPairs = options.filterPairs != 0;
     for (int i = 0; i < 2; ++i) {
         if (options.localSizePx[i] < 0) throw UsageError("local size: must not be negative");
         if (options.localSizePx[i] == 0) continue;

@@ -2,7 +2,9 @@
 // From the tuning table to a device: which lanes, storage and group sizes it gets.
 
 #include <array>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "earthshine/device.hpp"
 
@@ -18,7 +20,10 @@ Tuning tuningFor(const DeviceCaps& caps, const DeviceOptions& options);
 /// Work-items a group of one kernel, x and y.
 std::array<int, 2> localSizeOf(const Tuning& tuning, const std::string& kernel);
 
-/// "image" or "planar".
+/// How text says it, in the order of Storage.
+inline constexpr const char* kStorageNames[] = {"image", "planar", "packed"};
 const char* storageName(Storage storage);
+/// Nothing for a name of none.
+std::optional<Storage> storageOf(std::string_view name);
 
 }  // namespace earthshine

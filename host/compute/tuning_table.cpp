@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "compute/kernel_source.hpp"
+#include "compute/tuning.hpp"
 #include "earthshine/error.hpp"
 
 namespace earthshine {
@@ -24,6 +25,9 @@ const char kShippedTuning[] = R"(
 device     llvmpipe                  *                   1       image    8x8
 type       CPU                       *                   native  planar   64x4
 type       CPU                       unpack              -       -        64x1
+type       CPU                       atrous_pair         -       -        1x1
+vendor     NVIDIA                    *                   1       packed   16x8
+vendor     NVIDIA                    atrous_pair         -       -        128x1
 default    *                         *                   1       image    16x8
 )";
 
@@ -89,8 +93,8 @@ std::string readRow(const std::vector<std::string>& words, TuningRow& row) {
     row.lanes = lanes == "-" ? 0 : lanes == "native" ? TuningRow::kNativeLanes : numberOf(lanes);
     if (lanes != "-" && lanes != "native" && row.lanes != 1 && row.lanes != 4 && row.lanes != 8 && row.lanes != 16)
         return fmt::format("lanes '{}' is none of 1, 4, 8, 16, native, -", lanes);
-    if (storage != "image" && storage != "planar" && storage != "-")
-        return fmt::format("storage '{}' is none of image, planar, -", storage);
+    if (storage != "-" && !storageOf(storage))
+        return fmt::format("storage '{}' is none of {}, -", storage, fmt::join(kStorageNames, ", "));
     row.storage = storage == "-" ? "" : storage;
     if (group == "-") return {};
     const std::size_t cross = std::min(group.find('x'), group.size());
@@ -171,7 +175,7 @@ Tuning lookUpTuning(const std::vector<TuningRow>& rows, const DeviceCaps& caps) 
         tuning.lanes = row->lanes != TuningRow::kNativeLanes ? row->lanes : width >= 16 ? 16 : width >= 8 ? 8 : 4;
     }
     if (const TuningRow* row = first([](const TuningRow& r) { return !r.storage.empty(); })) {
-        tuning.storage = row->storage == "image" ? Storage::Image : Storage::Planar;
+        tuning.storage = *storageOf(row->storage);
         tuning.reason = fmt::format("{}, {}{}{}", row->source, kScopes[int(row->scope)],
                                     row->pattern.empty() ? "" : " ", row->pattern);
     }

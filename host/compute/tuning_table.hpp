@@ -9,7 +9,7 @@
 // scope    device, platform, vendor (a part of that name, in any case), type (GPU, CPU, accelerator, other), default
 // kernel   a kernel's name, or * for all. Only rows of all kernels have lanes and storage
 // lanes    1, 4, 8, 16; native: the device's float width, from 4 to 16
-// storage  image, planar
+// storage  image, planar, packed
 // group    work-items a group, x by y
 // - leaves a value to a row further down this order: device, platform, vendor, type, default; within one scope a
 // kernel's own row before *, then the order of the text. A user's rows go before all of the library's.

@@ -105,11 +105,19 @@ void IndirectPass::denoise(const FrameSurfaces& inputs, const FrameSurfaces& pre
     if (params.checksHistory) historyCheck_.enqueue({change_, confidence_}, params.historyCheck);
 
     const Surface* filtered = &accumulated;
-    for (std::size_t pass = 0; pass < params.filterPasses.size(); ++pass) {
-        const bool isRemembered = int(pass) + 1 == params.feedbackPasses;
-        const Surface& out = isRemembered ? next_.irradiance : filtered_[pass % 2];
-        atrous_.enqueue({*filtered, inputs.normalWs, inputs.depth, next_.length, next_.moment, out},
-                        params.filterPasses[pass]);
+    const std::vector<AtrousParams>& passes = params.filterPasses;
+    for (std::size_t done = 0; done < passes.size();) {
+        const AtrousParams& pass = passes[done];
+        const bool isPair = device_.tuning().filterPairs && AtrousStage::canPair(pass) &&
+                            pass.radiusY == 0;  // a column follows each row
+        done += isPair ? 2 : 1;
+        const Surface& free = filtered == &filtered_[0] ? filtered_[1] : filtered_[0];
+        const Surface& out = int(done) == params.feedbackPasses ? next_.irradiance : free;
+        const AtrousStage::Images images{*filtered, inputs.normalWs, inputs.depth, next_.length, next_.moment, out};
+        if (isPair)
+            atrous_.enqueuePair(images, pass);
+        else
+            atrous_.enqueue(images, pass);
         filtered = &out;
     }
     irradiance_ = *filtered;

@@ -53,7 +53,8 @@ std::vector<AtrousParams> filterPasses(const Settings& settings, const FrameGeom
         p.stepPx = 1 << i;
         p.weights = settings.filterWeights == FilterWeights::Plane ? ATROUS_WEIGHTS_PLANE : ATROUS_WEIGHTS_DEPTH;
         p.depthTolerance = settings.filterDepth;
-        p.normalTolerance = settings.filterNormal;
+        p.inverseNormalTolerance = 1.0f / settings.filterNormal;
+        p.inverseStep = 1.0f / float(p.stepPx);
         // Each iteration leaves less noise: a fourth of the variance, or so.
         p.luminanceTolerance = keepsMoment(settings) ? std::ldexp(settings.filterLuminance, -i) : 0.0f;
         // A step is twice as wide as the one before: it must fade twice as fast, or it blurs what frames made clean.

@@ -95,7 +95,7 @@ struct Pipeline::Impl {
             if (std::memcmp(back.data(), in.data(), in.sizeBytes()) != 0)
                 throw DeviceError(fmt::format(
                     "{} or R32F surfaces do not come back as written on \"{}\"; use {} storage", formatName(format),
-                    device.caps().name, device.tuning().storage == Storage::Image ? "planar" : "image"));
+                    device.caps().name, device.tuning().storage == Storage::Planar ? "image" : "planar"));
         }
     }
 

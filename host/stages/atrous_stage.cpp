@@ -6,7 +6,7 @@
 
 namespace earthshine {
 
-void AtrousStage::enqueue(const Images& images, const AtrousParams& params) {
+void AtrousStage::set(Kernel& kernel, const Images& images, const AtrousParams& params) {
     constexpr int kMaxLanes = 16, kMaxRadius = 2;
     const Extent extent = images.outIrradiance.extent();
     requireExtent("atrous", "inIrradiance", images.irradiance, extent);
@@ -17,11 +17,24 @@ void AtrousStage::enqueue(const Images& images, const AtrousParams& params) {
     if (params.stepPx < 1 || kMaxRadius * params.stepPx > SURFACE_GUARD - kMaxLanes)
         throw DeviceError(fmt::format("atrous: a step of {} px is not in [1; {}]", params.stepPx,
                                       (SURFACE_GUARD - kMaxLanes) / kMaxRadius));
-    kernel_.set("inIrradiance", images.irradiance).set("inNormalWs", images.normalWs).set("inDepth", images.depth);
-    kernel_.set("inLength", images.length);
+    kernel.set("inIrradiance", images.irradiance).set("inNormalWs", images.normalWs).set("inDepth", images.depth);
+    kernel.set("inLength", images.length);
+    kernel.set("outIrradiance", images.outIrradiance).setParams("params", params);
+}
+
+void AtrousStage::enqueue(const Images& images, const AtrousParams& params) {
+    set(kernel_, images, params);
     kernel_.set("inMoment", params.luminanceTolerance > 0.0f ? images.moment : images.length);  // else bound, not read
-    kernel_.set("outIrradiance", images.outIrradiance).setParams("params", params);
-    kernel_.enqueue(extent);
+    kernel_.enqueue(images.outIrradiance.extent());
+}
+
+void AtrousStage::enqueuePair(const Images& images, const AtrousParams& params) {
+    if (!canPair(params)) throw DeviceError("atrous: a pair has weights of planes alone");
+    set(pair_, images, params);
+    const Extent extent = images.outIrradiance.extent();
+    const int widthPx = ATROUS_PAIR_STRIP(lanes_) * lanes_, heightPx = ATROUS_PAIR_ROWS(lanes_) * params.stepPx;
+    pair_.enqueueItems(std::size_t((extent.widthPx + widthPx - 1) / widthPx),
+                       std::size_t((extent.heightPx + heightPx - 1) / heightPx * params.stepPx));
 }
 
 }  // namespace earthshine

@@ -1,5 +1,5 @@
 #pragma once
-// One pass of the edge-avoiding a-trous filter: the host half of kernels/atrous.cl.
+// Passes of the edge-avoiding a-trous filter: the host half of kernels/atrous.cl and atrous_pair.cl.
 
 #include "atrous_params.h"
 #include "compute/kernel.hpp"
@@ -17,12 +17,22 @@ public:
         const Surface& moment;  ///< read only if luminanceTolerance > 0
         const Surface& outIrradiance;
     };
-    explicit AtrousStage(const Device& device) : kernel_(device, "atrous") {}
+    explicit AtrousStage(const Device& device)
+        : lanes_(device.tuning().lanes), kernel_(device, "atrous"), pair_(device, "atrous_pair") {}
     /// Throws DeviceError if the taps reach farther than a surface's guard.
     void enqueue(const Images& images, const AtrousParams& params);
+    /// Can a row and a column with these parameters be one launch?
+    static bool canPair(const AtrousParams& params) {
+        return params.weights == ATROUS_WEIGHTS_PLANE && params.luminanceTolerance == 0.0f;
+    }
+    /// A row of five taps and a column of five, whatever radius `params` has, in one launch.
+    void enqueuePair(const Images& images, const AtrousParams& params);
 
 private:
-    Kernel kernel_;
+    void set(Kernel& kernel, const Images& images, const AtrousParams& params);
+
+    int lanes_;
+    Kernel kernel_, pair_;
 };
 
 }  // namespace earthshine

@@ -1,4 +1,4 @@
-// Parameters of atrous.cl.
+// Parameters of atrous.cl and atrous_pair.cl.
 #ifndef EARTHSHINE_SHARED_ATROUS_PARAMS_H
 #define EARTHSHINE_SHARED_ATROUS_PARAMS_H
 
@@ -9,22 +9,29 @@
 namespace earthshine {
 #endif
 
+// How much of the picture an item of atrous_pair.cl filters. One pixel's column, not long: there must be many items for a
+// GPU. Items of several lanes are a CPU's: wide strips, since memory comes in along rows; and long ones, for the four rows
+// that each filters beside its own.
+#define ATROUS_PAIR_STRIP(LANES) ((LANES) == 1 ? 1 : 16)
+#define ATROUS_PAIR_ROWS(LANES) ((LANES) == 1 ? 16 : 64)
+
 #define ATROUS_WEIGHTS_PLANE 0
 #define ATROUS_WEIGHTS_DEPTH 1
 
 typedef struct AtrousParams {
     ViewRays cameraRays;
-    i32 radiusX, radiusY;       // [0; 2]: taps on each side
+    i32 radiusX, radiusY;       // [0; 2]: taps on each side; atrous_pair has 2 and 2
     i32 stepPx;                 // >= 1: from tap to tap; 2 stepPx <= SURFACE_GUARD - LANES
     i32 weights;                // ATROUS_WEIGHTS_*
     f32 share0, share1, share2; // of taps 0, 1 and 2 steps away, in one dimension, before the edges
     f32 depthTolerance;         // > 0; plane: metres off the plane a metre aside; depth: m a step
-    f32 normalTolerance;        // > 0: squared difference of unit normals
+    f32 inverseNormalTolerance; // 1 / squared difference of unit normals
     f32 luminanceTolerance;     // 0 = off, else standard deviations of the accumulated luminance
     f32 fadeFrames;             // >= 1: longer history weakens the taps in proportion
     f32 footprintM;             // width of a pixel: footprintM + depth footprintPerM
     f32 footprintPerM;
-    i32 padding0, padding1, padding2;
+    f32 inverseStep;            // 1 / stepPx
+    i32 padding0, padding1;
 } AtrousParams;
 ES_ASSERT_SIZE(AtrousParams, 160);
 

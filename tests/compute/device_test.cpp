@@ -154,16 +154,17 @@ TEST_F(Devices, OptionsOutOfRangeAreRefused) {
 }
 
 TEST_F(Devices, CountsWhatIsAllocatedOnIt) {
-    for (const char* storage : {"image", "planar"}) {
+    for (const std::string storage : {"image", "planar", "packed"}) {
         DeviceOptions options;
         options.storage = storage;
         const Device device(selectDevice(""), options);
         EXPECT_EQ(device.allocatedBytes(), 0u);
         device.impl().makeBuffer(1000);
         EXPECT_EQ(device.allocatedBytes(), 1000u);
-        // A plane of 7 x 3 has rows of 16 floats, between two guards.
-        const std::size_t surface =
-            storage == std::string("image") ? 16u * 7 * 3 : 4u * (3 * 16 * 3 + 2 * SURFACE_GUARD);
+        // A plane of 7 x 3 has rows of 16 floats, between two guards; so have packed pixels.
+        const std::size_t surface = storage == "image"    ? 16u * 7 * 3
+                                    : storage == "planar" ? 4u * (3 * 16 * 3 + 2 * SURFACE_GUARD)
+                                                          : 8u * (16 * 3 + 2 * SURFACE_GUARD);
         Surface(device, PixelFormat::RGBA32F, {7, 3});
         EXPECT_EQ(device.allocatedBytes(), 1000u + surface) << storage;
     }

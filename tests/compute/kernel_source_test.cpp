@@ -107,14 +107,14 @@ TEST(KernelSource, ArgumentNamesAreTheDrivers) {
     int compared = 0;
     for (const reference::Variant& variant : reference::allVariants()) {
         if (variant.options.lanes != 1) continue;  // the width changes no argument
-        const bool isPlanar = variant.options.storage == "planar", hasRecords = variant.options.rsmRecords != 0;
+        const bool hasRecords = variant.options.rsmRecords != 0;
         const Device device(variant.caps, variant.options);
         for (const std::string& name : allKernels()) {
             SCOPED_TRACE(variant.name + ": " + name);
             const std::string text = expandKernel(name + ".cl", "");
             const std::string options =
-                std::string("-cl-std=CL1.2 -cl-kernel-arg-info -DES_DIALECT_CL -DLANES=1 -DSTORAGE_PLANAR=") +
-                (isPlanar ? "1" : "0") + " -DRSM_RECORDS=" + (hasRecords ? "1" : "0");
+                std::string("-cl-std=CL1.2 -cl-kernel-arg-info -DES_DIALECT_CL -DLANES=1 -DSTORAGE=") +
+                std::to_string(int(device.tuning().storage)) + " -DRSM_RECORDS=" + (hasRecords ? "1" : "0");
             const cl::Program program =
                 buildProgram(device.impl().context, device.impl().device, name, text, options, "");
             const cl::Kernel kernel(program, name.c_str());

@@ -104,7 +104,7 @@ TEST_P(GlSharingFrames, AreThoseOfHostBitForBit) {
 
 std::vector<reference::Variant> variants() {
     std::vector<reference::Variant> some = reference::defaultVariants();
-    for (const char* storage : {"image", "planar"}) {
+    for (const char* storage : {"image", "planar", "packed"}) {
         for (int lanes : {1, 8}) {
             reference::Variant v = some.at(0);
             v.options.lanes = lanes;
@@ -320,7 +320,7 @@ TEST_F(GlSharingRules, WhatIsNotFiniteStopsAtTheDoor) {
     pixels[6] = -1e15f;
     context->gl().BindTexture(GL_TEXTURE_2D, texture.name);
     context->gl().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, 4, 4, 0, GL_RGBA, GL_FLOAT, pixels.data());
-    for (const char* storage : {"image", "planar"}) {
+    for (const char* storage : {"image", "planar", "packed"}) {
         DeviceOptions options;
         options.storage = storage;
         const Device sharing = openWithGlSharing(Device(device()), options, context->handle());

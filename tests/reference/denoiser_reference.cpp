@@ -211,10 +211,10 @@ std::vector<glm::dvec3> filterPass(const FrameImages& f, const std::vector<glm::
                     if (tx < 0 || ty < 0 || tx >= e.widthPx || ty >= e.heightPx) continue;
                     const auto tap = std::size_t(ty * e.widthPx + tx);
                     if (!points[tap].isValid) continue;
-                    const glm::dvec3 turn = points[tap].normal - p.normal;
                     double w = 1.0;
-                    const double steps = std::hypot(i, j),
-                                 turned = glm::dot(turn, turn) / double(settings.filterNormal);
+                    const double steps = std::hypot(i, j), turned = 2.0 *
+                                                                    (1.0 - glm::dot(points[tap].normal, p.normal)) /
+                                                                    double(settings.filterNormal);
                     if (steps > 0.0 && settings.filterWeights == FilterWeights::Plane) {
                         const double reach =
                             double(settings.filterDepth) * std::max(8.0 / length, 1.0) * footprint * z * steps * step;

@@ -3,6 +3,8 @@
 #include <cctype>
 #include <cstdlib>
 
+#include "compute/tuning.hpp"
+
 namespace earthshine::reference {
 
 namespace {
@@ -30,23 +32,28 @@ std::vector<DeviceCaps> testedDevices() {
 
 }  // namespace
 
+double surfaceRounding(const Variant& variant) {
+    return variant.options.storage == "packed" ? 0x1p-13 : 0.0;
+}
+
 std::vector<Variant> allVariants() {
     std::vector<Variant> variants;
     for (const DeviceCaps& caps : testedDevices()) {
         for (int lanes : {1, 4, 8, 16}) {
-            for (const char* storage : {"image", "planar"}) {
-                if (!caps.images && std::string(storage) == "image") continue;
+            for (const std::string storage : kStorageNames) {
+                if (!caps.images && storage == "image") continue;
                 Variant v{caps, {}, testName(caps) + "_lanes" + std::to_string(lanes) + "_" + storage};
                 v.options.lanes = lanes;
                 v.options.storage = storage;
                 variants.push_back(v);
             }
         }
-        // The naive port: no records.
+        // The naive port: no records, no pairs.
         Variant v{caps, {}, testName(caps) + "_naive"};
         v.options.lanes = 1;
         v.options.storage = caps.images ? "image" : "planar";
         v.options.rsmRecords = 0;
+        v.options.filterPairs = 0;
         variants.push_back(v);
     }
     return variants;

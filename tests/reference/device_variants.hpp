@@ -16,6 +16,9 @@ struct Variant {
     std::string name;  ///< fit for a test's name: "pocl_lanes16_planar"
 };
 
+/// What a variant's surfaces round off a number, relative to it, beyond a float's own rounding.
+double surfaceRounding(const Variant& variant);
+
 /// How GoogleTest shows one.
 inline void PrintTo(const Variant& variant, std::ostream* out) {
     *out << variant.name;

@@ -46,6 +46,7 @@ TEST_P(Compose, OutputsFollowFromIrradiance) {
             const HostImage direct = pipeline_.read(Output::Direct), indirect = pipeline_.read(Output::Indirect);
             const HostImage color = pipeline_.read(Output::Color);
             const HostImage albedo = toFloat(frame.albedo.view());
+            const double rounding = reference::surfaceRounding(GetParam());
             const HostImage emission =
                 hasEmission ? toFloat(frame.emission.view()) : HostImage(albedo.format(), albedo.extent());
             int skyPixels = 0;
@@ -61,8 +62,8 @@ TEST_P(Compose, OutputsFollowFromIrradiance) {
                         const auto eDirect = double(directIrradiance.pixel(x, y)[c]);
                         const auto eIndirect = double(indirectIrradiance.pixel(x, y)[c]);
                         const auto emitted = double(emission.pixel(x, y)[c]);
-                        // Three roundings of 32 bits each.
-                        const double bar = 3e-7 * (emitted + reflectance * (eDirect + eIndirect));
+                        // Three roundings of 32 bits each, and two of surfaces.
+                        const double bar = (3e-7 + 2.0 * rounding) * (emitted + reflectance * (eDirect + eIndirect));
                         ASSERT_NEAR(double(direct.pixel(x, y)[c]), reflectance * eDirect + emitted, bar);
                         ASSERT_NEAR(double(indirect.pixel(x, y)[c]), reflectance * eIndirect, bar);
                         ASSERT_NEAR(double(color.pixel(x, y)[c]),

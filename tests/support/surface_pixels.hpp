@@ -1,12 +1,31 @@
 #pragma once
 // What a surface holds, read without any kernel.
 
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+
 #include "compute/device_impl.hpp"
 #include "compute/surface.hpp"
 
 namespace earthshine::test {
 
-/// R32F, or RGBA32F with alpha 1, in either storage. Waits for the queue.
+/// Channel c of packed_three.clh's two words, from its table of bits.
+inline float packedChannel(std::uint32_t low, std::uint32_t high, int c) {
+    const std::uint64_t bits = std::uint64_t(high) << 32 | low;
+    const int width = c == 2 ? 22 : 21;
+    return std::bit_cast<float>(std::uint32_t(bits >> (21 * c)) << (32 - width));
+}
+/// The two words of three numbers that lose nothing.
+inline std::array<std::uint32_t, 2> packedWords(const float* v) {
+    std::uint64_t bits = 0;
+    for (int c = 0; c < 3; ++c)
+        bits |= std::uint64_t(std::bit_cast<std::uint32_t>(v[c]) >> (c == 2 ? 10 : 11)) << (21 * c);
+    return {std::uint32_t(bits), std::uint32_t(bits >> 32)};
+}
+
+/// R32F, or RGBA32F with alpha 1, in any storage. Waits for the queue.
 inline HostImage readSurface(const Device& device, const Surface& surface) {
     Device::Impl& impl = device.impl();
     const Extent e = surface.extent();
@@ -25,6 +44,12 @@ inline HostImage readSurface(const Device& device, const Surface& surface) {
         for (int x = 0; x < e.widthPx; ++x) {
             float* pixel = image.pixel(x, y);
             if (!isOne) pixel[3] = 1.0f;
+            if (!isOne && device.tuning().storage == Storage::Packed) {
+                std::uint32_t words[2];
+                std::memcpy(words, &planes[std::size_t(2 * (SURFACE_GUARD + y * l.pitch + x))], sizeof words);
+                for (int c = 0; c < 3; ++c) pixel[c] = packedChannel(words[0], words[1], c);
+                continue;
+            }
             for (int c = 0; c < (isOne ? 1 : 3); ++c)
                 pixel[c] = planes[std::size_t(SURFACE_GUARD + c * l.planeStride + y * l.pitch + x)];
         }

@@ -8,8 +8,9 @@
 
 namespace earthshine {
 
-/// How a kernel's surfaces are kept: OpenCL images, or one buffer of float planes with padded rows.
-enum class Storage { Image, Planar };
+/// How a kernel's surfaces are kept: OpenCL images; one buffer of float planes with padded rows; or one buffer of
+/// pixels, whose three numbers share 64 bits (12 of mantissa each: kernels/common/packed_three.clh).
+enum class Storage { Image, Planar, Packed };
 
 /// How kernels are built and launched on a device. Defaults come from the tuning table (bench/README.md).
 struct Tuning {
@@ -21,6 +22,7 @@ struct Tuning {
     int lanes = 1;                     ///< pixels a work-item computes: 1, 4, 8 or 16
     Storage storage = Storage::Image;  ///< of every surface
     bool rsmRecords = true;            ///< gather from packed 32-byte records; false: from the RSM's three images
+    bool filterPairs = true;           ///< a row and a column of the separable filter in one launch; false: in two
     int localSizePx[2] = {1, 1};       ///< work-items a group, x and y
     std::vector<Group> groups;         ///< the same of kernels that have their own
     std::string reason;                ///< one line: where lanes and storage come from
@@ -61,8 +63,9 @@ DeviceCaps selectDevice(const std::string& spec, std::string* why = nullptr);
 /// What to change of a device's own defaults; for experiments and tests.
 struct DeviceOptions {
     int lanes = 0;                ///< 0 = the tuning table's
-    std::string storage;          ///< "image", "planar", "" = the tuning table's
+    std::string storage;          ///< "image", "planar", "packed", "" = the tuning table's
     int rsmRecords = -1;          ///< 0, 1, -1 = the tuning table's
+    int filterPairs = -1;         ///< 0, 1, -1 = the tuning table's
     int localSizePx[2] = {0, 0};  ///< of every kernel; 0 = the tuning table's
     std::string tuningFile;       ///< rows that go before the library's own; "" = $EARTHSHINE_TUNING or none
     bool profiling = false;       ///< stage times by profiling events; slows some drivers down (Intel's by up to 1.8x)

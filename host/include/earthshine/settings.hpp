@@ -29,8 +29,11 @@ enum class Rotation {
     Tile,   ///< by one of 16 angles, the same every 4 x 4 pixels; then the mean over as many, as far as they are one
             ///< surface: no noise. Pixels that Upsampling::Interpolate gathers in full stay unaveraged; frames turn all
             ///< pixels alike, which antiLag takes for a little change of light
+    Coherent,  ///< by sets: every fourth of 64 pixels of a row gathers from the same texels, chosen for all of them by
+               ///< what they send there. Less work where lanes are wide, and noise that filters take for structure;
+               ///< not with Upsampling::Interpolate, whose pixels are no sets
 };
-inline constexpr const char* kRotationNames[] = {"off", "noise", "tile"};
+inline constexpr const char* kRotationNames[] = {"off", "noise", "tile", "coherent"};
 
 /// How the disk's samples are spread over radii, each by its own pdf, so that the mean is the same.
 enum class RadiusMapping {
@@ -134,8 +137,9 @@ void forEachSetting(SettingsT& s, Visitor&& visit) {
     visit(SettingInfo{"radius", "of the RSM's side", 1e-4, 2,
                       "disk: radius around the pixel's own projection; below 1.4143 far texels are left out"},
           s.radiusUv);
-    visit(SettingInfo{"rotation", "", 0, 2,
-                      "disk: pixels turn the pattern by blue noise, by a tile of 4x4 and average it, or not (bands)",
+    visit(SettingInfo{"rotation", "", 0, 3,
+                      "disk: pixels turn the pattern by blue noise, by a tile of 4x4 and average it, in sets (coherent), or "
+                      "not (bands)",
                       kRotationNames},
           s.rotation);
     visit(SettingInfo{"animate-noise", "", 0, 1,

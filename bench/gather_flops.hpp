@@ -32,7 +32,8 @@ inline double chooseFlops(const Settings& settings) {
     return kCentres * kCentre + kMove + settings.sampleCount * (point + 2 + kCentres * density + 1);
 }
 
-/// rsm_gather_coherent.cl: of one pixel and one light. Texels are the same for all lanes; what is left is geometry, weight and flux.
+/// rsm_gather_coherent.cl: of one pixel and one light. Texels are the same for all lanes; what is left is geometry,
+/// weight and flux.
 inline double coherentGatherFlops(const Settings& settings) {
     return kPositionFromDepth + settings.sampleCount * (kTexelGeometry + 1 + kMad3);
 }

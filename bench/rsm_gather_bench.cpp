@@ -115,9 +115,9 @@ struct Coherent {
 Row coherent(const Variant& variant, Extent extent, int sampleCount, bool chooses, bool gathers) {
     const auto c = std::make_shared<Coherent>(variant, extent, sampleCount);
     Row row{.device = c->room.device, .run = launches(c->room.device, [=] {
-                if (chooses) c->enqueueChoose();
-                if (gathers) c->enqueueGather();
-            })};
+                                          if (chooses) c->enqueueChoose();
+                                          if (gathers) c->enqueueGather();
+                                      })};
     row.pixels = c->room.pixels;
     row.samples = sampleCount;
     const Work choose = chooses ? c->chooseWork() : Work{}, gather = gathers ? c->gatherWork() : Work{};

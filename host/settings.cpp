@@ -61,8 +61,9 @@ void validate(const Settings& settings) {
         throw UsageError("upsampling: interpolate gathers the rest from a disk; use it with --estimator disk");
     if (settings.divisor > 1 && settings.upsampling == Upsampling::Interpolate &&
         settings.rotation == Rotation::Coherent)
-        throw UsageError("rotation: coherent needs whole rows, and upsampling interpolate gathers what it leaves out; "
-                         "use --upsampling bilateral");
+        throw UsageError(
+            "rotation: coherent needs whole rows, and upsampling interpolate gathers what it leaves out; "
+            "use --upsampling bilateral");
     if (settings.feedback > settings.filterIterations)
         throw UsageError(fmt::format("feedback: history cannot remember iteration {} of {} (filter)", settings.feedback,
                                      settings.filterIterations));

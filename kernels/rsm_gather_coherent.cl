@@ -5,8 +5,8 @@
 //   in   inNormalWs, inDepth, rsm, lights   as rsm_gather.cl
 //   in   choices        rsm_choose's outChoices of the same rows
 //   out  outIrradiance  lx, >= 0, finite; 0 on sky
-//   Work 2D, one item per LANES pixels of each of a row's four classes x % 4; with LANES 1, one item per pixel; any local
-//   size; items past the edge return.
+//   Work 2D, one item per 4 LANES pixels of a row, LANES of each of four sets; with LANES 1, one item per pixel; any
+//   local size; items past the edge return.
 
 #include "interleave_rows.clh"
 #include "rsm.clh"
@@ -41,11 +41,12 @@ __kernel void rsm_gather_coherent(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), R
     int firstSet = (row * spans + firstX / COHERENT_SPAN_PX) * COHERENT_STRIDE_PX;
     int lightStride = params.rowCount * spans * COHERENT_STRIDE_PX * params.gather.sampleCount;
     vfloat3 irradiance[COHERENT_STRIDE_PX];
-    for (int i = 0; i < classes; ++i) {
+    for (int i = 0; i < classes; ++i) {  // pixels firstX + i + 4 lane
         int x = firstX + i;
         vfloat depth = pickRow1(SURFACE_ARG(inDepth), 2, x, y);
         vfloat3 normalWs = pickRow3(SURFACE_ARG(inNormalWs), 2, x, y);
-        vfloat3 positionWs = positionFromDepth(&params.gather.cameraRays, x + COHERENT_STRIDE_PX * laneIndex(), (vint)(y), depth);
+        vint xs = x + COHERENT_STRIDE_PX * laneIndex();
+        vfloat3 positionWs = positionFromDepth(&params.gather.cameraRays, xs, (vint)(y), depth);
         int set = firstSet + (x & (COHERENT_STRIDE_PX - 1));
         irradiance[i] = setIrradiance(RSM_ARG(rsm), lights, choices + set * params.gather.sampleCount, lightStride,
                                       &params.gather, positionWs, normalWs);

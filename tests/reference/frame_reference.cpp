@@ -222,7 +222,8 @@ std::vector<glm::dvec3> rsmCoherent(const std::vector<SurfacePoint>& points, Ext
     const int setsInRow = (extent.widthPx + 63) / 64 * 4;
     for (int set = 0; set < setsInRow * extent.heightPx; ++set) {
         const int column = set % setsInRow, y = set / setsInRow;
-        // The set's pixels, and their disks' centres; sky has that of the pixel before it, at the start of the one after.
+        // The set's pixels, and their disks' centres; sky has that of the pixel before it, at the start of the one
+        // after.
         std::vector<std::size_t> pixels;
         std::vector<glm::dvec2> centres;
         std::size_t missing = 0;

@@ -1,4 +1,5 @@
-// Sets of pixels that share texels, at the level of their two stages: a picture in bands of rows is the picture at once.
+// Sets of pixels that share texels, at the level of their two stages: a picture in bands of rows is the picture at
+// once.
 
 #include <gtest/gtest.h>
 
@@ -38,14 +39,13 @@ TEST_P(Coherent, BandsOfRowsAreThePicture) {
     Settings settings;
     settings.sampleCount = kSamples;
     settings.rotation = Rotation::Coherent;
-    const RsmChooseParams params =
-        makeParams(settings, {makeViewRays(frame.camera, options.extent), options.extent, inputs.rsm.sizePx,
-                              inputs.rsm.lightCount, inputs.shadowExtent})
-            .choose;
+    const RsmChooseParams params = makeParams(settings, {makeViewRays(frame.camera, options.extent), options.extent,
+                                                         inputs.rsm.sizePx, inputs.rsm.lightCount, inputs.shadowExtent})
+                                       .choose;
     const auto inBandsOf = [&](int rows) {
         const Surface out(device, PixelFormat::RGBA32F, options.extent);
-        const std::size_t size = choicesInRow(options.extent.widthPx, kSamples) * std::size_t(rows) *
-                                 std::size_t(inputs.rsm.lightCount);
+        const std::size_t size =
+            choicesInRow(options.extent.widthPx, kSamples) * std::size_t(rows) * std::size_t(inputs.rsm.lightCount);
         const cl::Buffer choices = device.impl().makeBuffer(sizeof(RsmChoice) * size);
         for (int first = 0; first < options.extent.heightPx; first += rows) {
             RsmChooseParams band = params;

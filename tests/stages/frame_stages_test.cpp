@@ -223,9 +223,9 @@ TEST_P(FrameStages, AgreeWithTheReferenceOfCoherentSets) {
     }
 }
 
-// Whatever the disks, frames' mean tends to the full sum at every pixel. In doubles, 32 000 frames of 8 samples, on a scene
-// of chance whose light is mostly a few peaks: 125 frames are off by 0.5 to 1 of the mean, these by 0.01 to 0.03, all of the
-// picture by 0.24 % at most; no more than twice that is asked for.
+// Whatever the disks, frames' mean tends to the full sum at every pixel. In doubles, 32 000 frames of 8 samples, on a
+// scene of chance whose light is mostly a few peaks: 125 frames are off by 0.5 to 1 of the mean, these by 0.01 to 0.03,
+// all of the picture by 0.24 % at most; no more than twice that is asked for.
 TEST(CoherentReference, FramesTendToTheFullSum) {
     reference::SyntheticOptions options;
     options.extent = {68, 2};

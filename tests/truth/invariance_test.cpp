@@ -130,9 +130,9 @@ TEST_F(Invariance, TileOverSamplesRadiusAndDivisor) {
     }
 }
 
-// Sets of pixels that share texels, around any of them: in parallel, where all of a picture is lit nearly alike, and along a
-// shared edge, where a set has points near and far. 4096 samples of 320 pixels are more choices than a launch holds, so
-// these come in bands of rows. Frames choose anew: eight of them.
+// Sets of pixels that share texels, around any of them: in parallel, where all of a picture is lit nearly alike, and
+// along a shared edge, where a set has points near and far. 4096 samples of 320 pixels are more choices than a launch
+// holds, so these come in bands of rows. Frames choose anew: eight of them.
 TEST_F(Invariance, CoherentOverSamplesMappingsRadiusAndDivisor) {
     DrawnScene parallel(platesWith(kAbove)), perpendicular(platesWith(kBeside));
     const Extent extent{320, 320};
@@ -144,9 +144,10 @@ TEST_F(Invariance, CoherentOverSamplesMappingsRadiusAndDivisor) {
         settings.mapping = mapping;
         settings.divisor = divisor;
         settings.animatesNoise = true;
-        const std::string what = fmt::format("_{}_1/{}_{}spp_radius_{}", kRadiusMappingNames[int(mapping)], divisor,
-                                             sampleCount, radiusUv);
-        for (const auto& [name, frame, truth] : {std::tuple("parallel", &above, 0.199825), {"perpendicular", &beside, 0.200044}}) {
+        const std::string what =
+            fmt::format("_{}_1/{}_{}spp_radius_{}", kRadiusMappingNames[int(mapping)], divisor, sampleCount, radiusUv);
+        for (const auto& [name, frame, truth] :
+             {std::tuple("parallel", &above, 0.199825), {"perpendicular", &beside, 0.200044}}) {
             if (mapping == RadiusMapping::Area && sampleCount < 4096 && frame == &beside) continue;  // misses the peak
             double sum = 0.0;
             for (int i = 0; i < frames; ++i) sum += formFactor(*frame, settings) / frames;

@@ -29,9 +29,9 @@ enum class Rotation {
     Tile,   ///< by one of 16 angles, the same every 4 x 4 pixels; then the mean over as many, as far as they are one
             ///< surface: no noise. Pixels that Upsampling::Interpolate gathers in full stay unaveraged; frames turn all
             ///< pixels alike, which antiLag takes for a little change of light
-    Coherent,  ///< by sets: every fourth of 64 pixels of a row gathers from the same texels, chosen for all of them by
-               ///< what they send there. Less work where lanes are wide, and noise that filters take for structure;
-               ///< not with Upsampling::Interpolate, whose pixels are no sets
+    Coherent,  ///< in sets: every fourth of 64 pixels of a row reads the same texels, around any of them. About half
+               ///< the time a sample on CPUs; but a set's noise is alike, and what remains of it after a filter about
+               ///< doubles. Not with Upsampling::Interpolate, whose pixels are no sets
 };
 inline constexpr const char* kRotationNames[] = {"off", "noise", "tile", "coherent"};
 
@@ -138,8 +138,7 @@ void forEachSetting(SettingsT& s, Visitor&& visit) {
                       "disk: radius around the pixel's own projection; below 1.4143 far texels are left out"},
           s.radiusUv);
     visit(SettingInfo{"rotation", "", 0, 3,
-                      "disk: pixels turn the pattern by blue noise, by a tile of 4x4 and average it, in sets (coherent), or "
-                      "not (bands)",
+                      "disk: pixels turn the pattern by blue noise, a tile of 4x4 (averaged), in sets, or not (bands)",
                       kRotationNames},
           s.rotation);
     visit(SettingInfo{"animate-noise", "", 0, 1,

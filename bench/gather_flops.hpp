@@ -20,4 +20,22 @@ inline double gatherFlops(bool hasRecords, const Settings& settings) {
     return kPositionFromDepth + kMove + kCentre + settings.sampleCount * sample + kMad3;
 }
 
+/// rsm_choose.cl: of one set and one light. Eight points and their centres on the map, the pattern's move. A sample: u
+/// shifted, wrapped, mapped and turned; its place (two sums); eight densities (two differences, a square, max, the
+/// mapping's, a sum); its weight.
+inline double chooseFlops(const Settings& settings) {
+    constexpr double kCentres = 8, kMove = 1 + 3 + 3;
+    constexpr double kCentre = kPositionFromDepth + kRowTimesPoint + 2 + 2 * (kRowTimesPoint + 1) + 4;
+    const bool isArea = settings.mapping == RadiusMapping::Area, isPolar = settings.mapping == RadiusMapping::Polar;
+    const double point = 3 + (isArea ? 1 : isPolar ? 2 : 4) + 1 + 2 * (3 + 1);
+    const double density = 2 + kFma + 1 + 1 + (isArea ? 0 : isPolar ? 1 : 3) + 1;
+    return kCentres * kCentre + kMove + settings.sampleCount * (point + 2 + kCentres * density + 1);
+}
+
+/// rsm_gather_coherent.cl: of one pixel and one light. Texels are the same for all lanes; what is left is geometry,
+/// weight and flux.
+inline double coherentGatherFlops(const Settings& settings) {
+    return kPositionFromDepth + settings.sampleCount * (kTexelGeometry + 1 + kMad3);
+}
+
 }  // namespace earthshine::bench

@@ -1,5 +1,6 @@
 // rsm_gather: the disk estimator, whose cost a sample is what its number of samples, 4 to 64, shows; with and without
-// packing the records that it gathers from; and as all pixels gather the same pattern.
+// packing the records that it gathers from; and as all pixels gather the same pattern. rsm_choose,
+// rsm_gather_coherent: as sets of pixels gather the same texels, each kernel alone and (rsm_gather.*.coherent) both.
 
 #include <fmt/format.h>
 
@@ -12,6 +13,8 @@
 #include "row.hpp"
 #include "stages/blue_noise.hpp"
 #include "stages/frame_params.hpp"
+#include "stages/rsm_choose_stage.hpp"
+#include "stages/rsm_gather_coherent_stage.hpp"
 #include "stages/rsm_gather_stage.hpp"
 #include "stages/rsm_pack_stage.hpp"
 
@@ -56,6 +59,73 @@ Row gather(const Variant& variant, Extent extent, const Setting& setting) {
     return row;
 }
 
+/// What a coherent gather runs on: its stages and its choices, of all rows at once.
+struct Coherent {
+    Coherent(const Variant& variant, Extent extent, int sampleCount)
+        : room(variant, extent),
+          out(room.three()),
+          pattern(room.device.impl().upload(makeDiskPattern(sampleCount))),
+          noise(room.device.impl().upload(makeRotationNoise())),
+          sets(double(choicesInRow(extent.widthPx, 1)) * extent.heightPx),
+          choices(room.device.impl().makeBuffer(sizeof(RsmChoice) * std::size_t(sets) * std::size_t(sampleCount) *
+                                                std::size_t(room.inputs.rsm.lightCount))),
+          choose(room.device),
+          gather(room.device) {
+        settings.sampleCount = sampleCount;
+        settings.rotation = Rotation::Coherent;
+        settings.radiusUv = 0.3f;  // as the other rows
+        params = room.params(settings).choose;
+        params.rowCount = extent.heightPx;
+        if (room.device.tuning().rsmRecords) RsmPackStage(room.device).enqueue(room.inputs.rsm, room.inputs.lights);
+        enqueueChoose();
+        room.device.impl().finish();
+    }
+    void enqueueChoose() {
+        const FrameSurfaces& i = room.inputs;
+        choose.enqueue({i.depth, i.lights, pattern, noise, choices}, params);
+    }
+    void enqueueGather() {
+        const FrameSurfaces& i = room.inputs;
+        gather.enqueue({i.normalWs, i.depth, i.rsm, i.lights, choices, out}, params);
+    }
+    // bytes: depth at eight of sixteen pixels, the choices.
+    Work chooseWork() const {
+        const double choiceBytes = sizeof(RsmChoice) * sets * settings.sampleCount;
+        return {.bytes = room.bytes({room.inputs.depth}) / 2 + choiceBytes, .flops = chooseFlops(settings) * sets};
+    }
+    // bytes: depth and out at every pixel, normals where there is no sky, the choices; of the map what they name.
+    Work gatherWork() const {
+        const double choiceBytes = sizeof(RsmChoice) * sets * settings.sampleCount;
+        return {.bytes = room.bytes({room.inputs.depth, out}, {room.inputs.normalWs}) + choiceBytes +
+                         room.rsmBytes(sets * settings.sampleCount),
+                .flops = coherentGatherFlops(settings) * room.seenPixels};
+    }
+
+    Room room;
+    Settings settings;
+    RsmChooseParams params{};
+    Surface out;
+    cl::Buffer pattern, noise;
+    double sets;
+    cl::Buffer choices;
+    RsmChooseStage choose;
+    RsmGatherCoherentStage gather;
+};
+
+Row coherent(const Variant& variant, Extent extent, int sampleCount, bool chooses, bool gathers) {
+    const auto c = std::make_shared<Coherent>(variant, extent, sampleCount);
+    Row row{.device = c->room.device, .run = launches(c->room.device, [=] {
+                                          if (chooses) c->enqueueChoose();
+                                          if (gathers) c->enqueueGather();
+                                      })};
+    row.pixels = c->room.pixels;
+    row.samples = sampleCount;
+    const Work choose = chooses ? c->chooseWork() : Work{}, gather = gathers ? c->gatherWork() : Work{};
+    row.work = {.bytes = choose.bytes + gather.bytes, .flops = choose.flops + gather.flops};
+    row.showsStages = chooses && gathers;
+    return row;
+}
+
 }  // namespace
 
 void addRsmGatherRows() {
@@ -66,6 +136,16 @@ void addRsmGatherRows() {
     add(usualExtents(), "8spp", {8});
     add(usualExtents(), "8spp_packing", {8, Rotation::Noise, true});
     add(usualExtents(), "8spp_same_pattern", {8, Rotation::Off});
+    const auto addCoherent = [](const char* stage, const Extents& extents, int sampleCount, const char* setting,
+                                bool chooses, bool gathers) {
+        addRows(stage, extents, fmt::format("{}spp{}", sampleCount, setting),
+                [=](const Variant& variant, Extent extent) {
+                    return coherent(variant, extent, sampleCount, chooses, gathers);
+                });
+    };
+    addCoherent("rsm_gather", usualExtents(), 8, "_coherent", true, true);
+    addCoherent("rsm_choose", usualExtents(), 8, "", true, false);
+    addCoherent("rsm_gather_coherent", usualExtents(), 8, "", false, true);
     for (const int sampleCount : {4, 16, 32, 64})
         add({{{1920, 1080}}}, fmt::format("{}spp", sampleCount), {sampleCount});
 }

@@ -75,6 +75,7 @@ std::vector<Scenario> makeScenarios() {
     tile.settings.rsmMinify = 2;
     bilateral.settings.divisor = interpolate.settings.divisor = 2;
     bilateral.settings.upsampling = Upsampling::Bilateral;
+    bilateral.settings.rotation = Rotation::Coherent;  // the other two gather at random
     interpolate.settings.upsampling = Upsampling::Interpolate;
     return {balanced, tile, bilateral, interpolate};
 }

@@ -59,6 +59,11 @@ void validate(const Settings& settings) {
     if (settings.divisor == 3) throw UsageError("divisor: 3 is not 1, 2 or 4");
     if (settings.divisor > 1 && settings.upsampling == Upsampling::Interpolate && settings.estimator == Estimator::Sum)
         throw UsageError("upsampling: interpolate gathers the rest from a disk; use it with --estimator disk");
+    if (settings.divisor > 1 && settings.upsampling == Upsampling::Interpolate &&
+        settings.rotation == Rotation::Coherent)
+        throw UsageError(
+            "rotation: coherent needs whole rows, and upsampling interpolate gathers what it leaves out; "
+            "use --upsampling bilateral");
     if (settings.feedback > settings.filterIterations)
         throw UsageError(fmt::format("feedback: history cannot remember iteration {} of {} (filter)", settings.feedback,
                                      settings.filterIterations));

@@ -16,25 +16,15 @@
 //   out  outRecords  RsmRecord, rows of ceil(sizePx / minify); flux 0 where the light meets nothing
 //   Work 2D, one item per LANES blocks of a row, over all maps below one another; items past the edge return.
 
+#include "mixed.clh"
 #include "rsm.clh"
 #include "rsm_record.clh"
 
 // The same texel is picked on every device.
 #pragma OPENCL FP_CONTRACT OFF
 
-// [0; 1) for each block and seed: mixed by multiplications and shifts until every bit depends on every other
-// (the constants are those that Wellons 2018 found to be least biased).
-static vuint mixed(vuint x) {
-    x ^= x >> 16;
-    x *= 0x7feb352du;
-    x ^= x >> 15;
-    x *= 0x846ca68bu;
-    x ^= x >> 16;
-    return x;
-}
-static vfloat blockRandom(vint block, uint seed) {
-    return toVfloat(asVint(mixed(asVuint(block) + mixed((vuint)(seed))) >> 8)) * 0x1p-24f;
-}
+// [0; 1) for each block and seed.
+static vfloat blockRandom(vint block, uint seed) { return fractionOf(mixed(asVuint(block) + mixed((vuint)(seed)))); }
 
 __kernel void rsm_minify(SURFACE_IN(inDepth), SURFACE_IN(inNormalWs), SURFACE_IN(inFlux),
                          __global const LightParams* restrict lights, __global RsmRecord* restrict outRecords,

@@ -14,6 +14,8 @@ IndirectPass::IndirectPass(const Device& device)
       rsmPack_(device),
       rsmMinify_(device),
       rsmGather_(device),
+      rsmChoose_(device),
+      rsmGatherCoherent_(device),
       rsmSum_(device),
       temporal_(device),
       historyCheck_(device),
@@ -74,6 +76,27 @@ void IndirectPass::sumInBands(const FrameSurfaces& inputs, const RsmSumParams& p
     }
 }
 
+// In bands of rows whose choices take no more memory than this: all rows at the usual numbers of samples.
+void IndirectPass::gatherShared(const FrameSurfaces& inputs, const RsmChooseParams& params) {
+    constexpr std::size_t kChoices = std::size_t(1) << 23;
+    const Extent extent = sampled_.extent();
+    const std::size_t perRow =
+        choicesInRow(extent.widthPx, params.gather.sampleCount) * std::size_t(std::max(inputs.rsm.lightCount, 1));
+    const int rows = std::clamp(int(kChoices / perRow), 1, extent.heightPx);
+    if (const std::size_t size = perRow * std::size_t(rows); choicesSize_ < size) {
+        choices_ = device_.impl().makeBuffer(sizeof(RsmChoice) * size);
+        choicesSize_ = size;
+    }
+    for (int first = 0; first < extent.heightPx; first += rows) {
+        RsmChooseParams band = params;
+        band.firstRowPx = first;
+        band.rowCount = std::min(rows, extent.heightPx - first);
+        rsmChoose_.enqueue({inputs.depth, inputs.lights, pattern_, noise_, choices_}, band);
+        rsmGatherCoherent_.enqueue({inputs.normalWs, inputs.depth, inputs.rsm, inputs.lights, choices_, sampled_},
+                                   band);
+    }
+}
+
 void IndirectPass::gather(const FrameSurfaces& inputs, const FrameParams& params,
                           const std::function<void(double)>& progress) {
     if (device_.tuning().rsmRecords && inputs.rsm.lightCount > 0) {
@@ -87,6 +110,10 @@ void IndirectPass::gather(const FrameSurfaces& inputs, const FrameParams& params
         return;
     }
     uploadPattern(params.gather.sampleCount, params.pattern);
+    if (params.sharesTexels) {
+        gatherShared(inputs, params.choose);
+        return;
+    }
     rsmGather_.enqueue({inputs.normalWs, inputs.depth, inputs.rsm, inputs.lights, pattern_, noise_, sampled_},
                        params.gather);
     if (!params.averagesTile) return;

@@ -9,6 +9,8 @@
 #include "pipeline/make_params.hpp"
 #include "stages/atrous_stage.hpp"
 #include "stages/history_check_stage.hpp"
+#include "stages/rsm_choose_stage.hpp"
+#include "stages/rsm_gather_coherent_stage.hpp"
 #include "stages/rsm_gather_stage.hpp"
 #include "stages/rsm_minify_stage.hpp"
 #include "stages/rsm_pack_stage.hpp"
@@ -47,6 +49,7 @@ private:
     void allocate(Extent extent, const FrameParams& params);
     void uploadPattern(int count, DiskPattern kind);
     void gather(const FrameSurfaces& inputs, const FrameParams& params, const std::function<void(double)>& progress);
+    void gatherShared(const FrameSurfaces& inputs, const RsmChooseParams& params);
     void sumInBands(const FrameSurfaces& inputs, const RsmSumParams& params,
                     const std::function<void(double)>& progress);
     void denoise(const FrameSurfaces& inputs, const FrameSurfaces& previous, const FrameParams& params);
@@ -55,6 +58,8 @@ private:
     RsmPackStage rsmPack_;
     RsmMinifyStage rsmMinify_;
     RsmGatherStage rsmGather_;
+    RsmChooseStage rsmChoose_;
+    RsmGatherCoherentStage rsmGatherCoherent_;
     RsmSumStage rsmSum_;
     TemporalStage temporal_;
     HistoryCheckStage historyCheck_;
@@ -63,7 +68,8 @@ private:
     std::optional<TileAverageStage> tileAverage_;  ///< once it was asked for
     std::optional<LowerResolution> lower_;         ///< the same
 
-    cl::Buffer noise_, pattern_, confidence_;
+    cl::Buffer noise_, pattern_, confidence_, choices_;
+    std::size_t choicesSize_ = 0;
     int patternSize_ = 0;
     DiskPattern patternKind_ = DiskPattern::Hammersley;
     Extent extent_;  ///< of the full picture

@@ -107,9 +107,9 @@ FrameParams makeParams(const Settings& settings, const FrameGeometry& full) {
     p.gather.lightCount = frame.lightCount;
     p.gather.sampleCount = settings.sampleCount;
     p.gather.radiusUv = settings.radiusUv;
-    p.gather.rotation = settings.rotation == Rotation::Off     ? ROTATION_OFF
-                        : settings.rotation == Rotation::Noise ? ROTATION_NOISE
-                                                               : ROTATION_TILE;
+    p.gather.rotation = settings.rotation == Rotation::Off    ? ROTATION_OFF
+                        : settings.rotation == Rotation::Tile ? ROTATION_TILE
+                                                              : ROTATION_NOISE;
     p.gather.mapping = settings.mapping == RadiusMapping::Area    ? MAPPING_AREA
                        : settings.mapping == RadiusMapping::Polar ? MAPPING_POLAR
                                                                   : MAPPING_SQUARED;
@@ -117,6 +117,9 @@ FrameParams makeParams(const Settings& settings, const FrameGeometry& full) {
     p.gather.frameShift = float(move.shift);
     p.gather.frameTurnCos = float(std::cos(2.0 * std::numbers::pi * move.turn));
     p.gather.frameTurnSin = float(std::sin(2.0 * std::numbers::pi * move.turn));
+    p.sharesTexels = settings.estimator == Estimator::Disk && settings.rotation == Rotation::Coherent;
+    p.choose.gather = p.gather;
+    p.choose.frameCentre = float(move.centre);
     p.sum.cameraRays = frame.cameraRays;
     p.sum.rsmSizePx = mapSizePx;
     p.sum.lightCount = frame.lightCount;
@@ -126,9 +129,9 @@ FrameParams makeParams(const Settings& settings, const FrameGeometry& full) {
     p.denoises = settings.accumulates || settings.filterIterations > 0;
     p.temporal = temporalParams(settings, frame);
     p.checksHistory = settings.accumulates && settings.antiLag > 0.0f;
-    // The check takes pixels for independent; a tile's mean is one for all of its pixels.
-    constexpr float kTilePixels = 16.0f;
-    p.historyCheck.droppedAbove = settings.antiLag * (p.averagesTile ? kTilePixels : 1.0f);
+    // The check takes pixels for independent; a tile's mean is one for all of its pixels, and a set's noise is alike.
+    constexpr float kAlikePixels = 16.0f;
+    p.historyCheck.droppedAbove = settings.antiLag * (p.averagesTile || p.sharesTexels ? kAlikePixels : 1.0f);
     p.historyCheck.keptBelow = 0.5f * p.historyCheck.droppedAbove;
     p.keepsMoment = keepsMoment(settings);
     p.filterPasses = filterPasses(settings, frame);

@@ -9,6 +9,7 @@
 #include "earthshine/settings.hpp"
 #include "exposure_params.h"
 #include "history_check_params.h"
+#include "rsm_choose_params.h"
 #include "rsm_gather_params.h"
 #include "rsm_pack_params.h"
 #include "rsm_sum_params.h"
@@ -40,6 +41,8 @@ struct FrameParams {
     ViewRays fullRays{};  ///< gather, sum, temporal and filter have those of the picture at 1 / divisor
     RsmPackParams pack{};
     RsmGatherParams gather{};
+    bool sharesTexels = false;  ///< by choose in place of gather
+    RsmChooseParams choose{};   ///< firstRowPx and rowCount are each launch's own
     RsmSumParams sum{};         ///< firstRowPx is each launch's own
     bool averagesTile = false;  ///< after the gather
     TileAverageParams tileAverage{};

@@ -100,7 +100,9 @@ FrameMove makeFrameMove(int index, int sampleCount) {
     const auto fraction = [](double x) { return x - std::floor(x); };
     // Within a ring, not over the disk: a step of some irrational number over it would be nearly a whole number of
     // rings for some sample counts (the golden ratio's at 8), and the rings' gaps would fill slowly.
-    return {fraction(index / kPlastic) / sampleCount, fraction(index / (kPlastic * kPlastic))};
+    // The centre's step shares no pattern with the other two.
+    return {fraction(index / kPlastic) / sampleCount, fraction(index / (kPlastic * kPlastic)),
+            fraction(index * std::numbers::sqrt2)};
 }
 
 }  // namespace earthshine

@@ -21,9 +21,9 @@ LightParams makeLightParams(const Light& light, Extent rsmExtent, Extent shadowE
 std::vector<f32x4> makeDiskPattern(int count, DiskPattern pattern = DiskPattern::Hammersley);
 
 /// How frame `index` moves the pattern of every pixel: u by `shift` [0; 1 / sampleCount), all of it by `turn` [0; 1)
-/// of a circle. Frame 0 stays.
+/// of a circle. Frame 0 stays. `centre` [0; 1) moves on which of several disks' centres each sample lies.
 struct FrameMove {
-    double shift, turn;
+    double shift, turn, centre;
 };
 
 /// The R2 sequence (Roberts 2018): in each of the pattern's rings of equal area, one a sample, the points of N frames

@@ -25,6 +25,12 @@ glm::dvec3 backwardsOf(const Camera& camera) {
     return glm::dvec3(glm::inverse(glm::dmat4(camera.viewFromWorld))[2]);
 }
 
+std::uint32_t mix(std::uint32_t v) {
+    v = (v ^ (v >> 16)) * 0x7feb352du;
+    v = (v ^ (v >> 15)) * 0x846ca68bu;
+    return v ^ (v >> 16);
+}
+
 // uv of a point in a camera's map; false if it is behind a perspective camera.
 bool project(const Camera& camera, const glm::dvec3& position, glm::dvec2& uv) {
     const glm::dvec4 clip =
@@ -99,11 +105,6 @@ std::vector<Vpl> vpls(const Light& light, const LightMaps& maps) {
 }
 
 std::vector<Vpl> minified(const std::vector<Vpl>& texels, int size, int factor, int lightIndex, std::uint32_t seed) {
-    const auto mix = [](std::uint32_t v) {
-        v = (v ^ (v >> 16)) * 0x7feb352du;
-        v = (v ^ (v >> 15)) * 0x846ca68bu;
-        return v ^ (v >> 16);
-    };
     const int blocks = (size + factor - 1) / factor;
     std::vector<Vpl> result(std::size_t(blocks) * std::size_t(blocks));
     for (int block = 0; block < blocks * blocks; ++block) {
@@ -211,6 +212,64 @@ PatternMove frameMove(int index, int sampleCount) {
     double g = 1.0;
     for (int i = 0; i < 60; ++i) g = std::cbrt(1.0 + g);
     return {std::fmod(index / g, 1.0) / sampleCount, std::fmod(index / (g * g), 1.0)};
+}
+
+std::vector<glm::dvec3> rsmCoherent(const std::vector<SurfacePoint>& points, Extent extent,
+                                    const std::vector<Vpl>& texels, const Light& light, int size, int count,
+                                    double radiusUv, int frameIndex, double mapScale, DiskShape shape) {
+    std::vector<glm::dvec3> result(points.size(), glm::dvec3(0.0));
+    const PatternMove step = frameMove(frameIndex, count);
+    const int setsInRow = (extent.widthPx + 63) / 64 * 4;
+    for (int set = 0; set < setsInRow * extent.heightPx; ++set) {
+        const int column = set % setsInRow, y = set / setsInRow;
+        // The set's pixels, and their disks' centres; sky has that of the pixel before it, at the start of the one
+        // after.
+        std::vector<std::size_t> pixels;
+        std::vector<glm::dvec2> centres;
+        std::size_t missing = 0;
+        for (int i = 0; i < 16; ++i) {
+            const int x = column / 4 * 64 + column % 4 + 4 * i;
+            const auto at = std::size_t(y * extent.widthPx + x);
+            if (x < extent.widthPx && points[at].isValid) {
+                glm::dvec2 centre(0.5);
+                if (project(light.camera, points[at].position, centre)) centre *= mapScale;
+                centres.push_back(glm::clamp(centre, glm::dvec2(0.0), glm::dvec2(1.0)));
+                pixels.push_back(at);
+            } else if (pixels.empty()) {
+                ++missing;
+            } else {
+                centres.push_back(centres.back());
+            }
+        }
+        if (pixels.empty()) continue;
+        centres.insert(centres.begin(), missing, centres.front());
+
+        const PatternMove own = patternMove(column, y);
+        const double start = (mix(std::uint32_t(y)) >> 8) / 16777216.0 + std::fmod(frameIndex * std::sqrt(2.0), 1.0);
+        for (int s = 0; s < count; ++s) {
+            double mirrored = 0.0, digit = 0.5;
+            for (int bits = s; bits != 0; bits /= 2, digit /= 2) mirrored += digit * (bits % 2);
+            const double u = std::fmod(double(s) / count + own.shift + step.shift, 1.0);
+            const double r = radiusUv * std::pow(u, shape.power);
+            const double angle = 2.0 * std::numbers::pi * ((shape.isLine ? 0.0 : mirrored) + own.turn + step.turn);
+            const glm::dvec2 place = centres[std::size_t(16.0 * std::fmod(s * 0.618034 + start, 1.0))] +
+                                     r * glm::dvec2(std::cos(angle), std::sin(angle));
+            const int px = int(std::floor(place.x * size)), py = int(std::floor(place.y * size));
+            if (px < 0 || py < 0 || px >= size || py >= size) continue;
+            // Over the unit square of the map: the mean of all disks' densities, each 1 / (2 pi d) du/dd.
+            double density = 0.0;
+            for (const glm::dvec2& centre : centres) {
+                const double d = glm::length(place - centre) / radiusUv;
+                if (d < 1.0) density += std::pow(d, 1.0 / shape.power - 2.0) / 16.0;
+            }
+            density /= shape.power * 2.0 * std::numbers::pi * radiusUv * radiusUv;
+            const Vpl& p = texels[std::size_t(py) * std::size_t(size) + std::size_t(px)];
+            for (const std::size_t at : pixels)
+                result[at] += p.flux * texelGeometry(points[at], p) * double(size) * double(size) /
+                              (density * count * std::numbers::pi);
+        }
+    }
+    return result;
 }
 
 glm::dvec3 rsmDisk(const SurfacePoint& x, const std::vector<Vpl>& texels, const Light& light, int size, int count,

@@ -81,6 +81,11 @@ struct DiskShape {
 glm::dvec3 rsmDisk(const SurfacePoint& x, const std::vector<Vpl>& texels, const Light& light, int size, int count,
                    double radiusUv, PatternMove move, double mapScale = 1.0, DiskShape shape = {});
 
+/// The same where sets of pixels, every fourth of 64 of a row, share texels: of the picture's pixels, from one light.
+std::vector<glm::dvec3> rsmCoherent(const std::vector<SurfacePoint>& points, Extent extent,
+                                    const std::vector<Vpl>& texels, const Light& light, int size, int count,
+                                    double radiusUv, int frameIndex, double mapScale = 1.0, DiskShape shape = {});
+
 /// Direct irradiance of one light behind its shadow map.
 glm::dvec3 directLight(const SurfacePoint& x, const Light& light, const ImageView& shadowDepth, double biasTexels,
                        double slopeBiasTexels);

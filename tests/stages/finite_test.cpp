@@ -76,6 +76,13 @@ Settings tiled() {
     return settings;
 }
 
+// Sets of pixels that share texels.
+Settings coherent() {
+    Settings settings = settingsOf(Preset::Balanced);
+    settings.rotation = Rotation::Coherent;
+    return settings;
+}
+
 struct Input {
     const char* name;
     HostImage FrameImages::*image;
@@ -142,6 +149,7 @@ TEST_P(Finite, OutputsWhateverInputsHold) {
         }
         for (const Estimator estimator : {Estimator::Disk, Estimator::Sum}) outputsOf(pipeline_, frame, estimator);
         outputsOf(pipeline_, frame, tiled());
+        outputsOf(pipeline_, frame, coherent());
         if (GetParam().options.rsmRecords != 0) outputsOf(pipeline_, frame, Estimator::Sum, 2);
     }
 }
@@ -184,6 +192,7 @@ TEST_P(SmallFrame, Runs) {
     for (const Estimator estimator : {Estimator::Disk, Estimator::Sum})
         outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), estimator);
     outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), tiled());
+    outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), coherent());
     if (GetParam().options.rsmRecords != 0)
         outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), Estimator::Disk, 2);
     for (int i = 0; i < 2; ++i) outputsOf(pipeline, reference::makeSyntheticFrame(smallFrame()), denoising());

@@ -36,6 +36,8 @@ std::vector<unsigned char> bytesOf(const FrameParams& p) {
     append(p.fullRays);
     append(p.pack);
     append(p.gather);
+    append(p.sharesTexels);
+    append(p.choose);
     append(p.sum);
     append(p.averagesTile);
     append(p.tileAverage);
@@ -208,6 +210,17 @@ TEST(MakeParams, DivisorsAreOneTwoOrFourAndInterpolationIsTheDisks) {
     EXPECT_NO_THROW(validate(settings));
     settings.estimator = Estimator::Sum;
     EXPECT_THAT(test::thrown<UsageError>([&] { validate(settings); }), testing::StartsWith("upsampling: "));
+}
+
+TEST(MakeParams, SetsOfPixelsAreOfWholeRows) {
+    Settings settings;
+    settings.rotation = Rotation::Coherent;
+    settings.upsampling = Upsampling::Interpolate;
+    EXPECT_NO_THROW(validate(settings));  // at full resolution nothing is interpolated
+    settings.divisor = 2;
+    EXPECT_THAT(test::thrown<UsageError>([&] { validate(settings); }), testing::StartsWith("rotation: coherent "));
+    settings.upsampling = Upsampling::Bilateral;
+    EXPECT_NO_THROW(validate(settings));
 }
 
 TEST(MakeParams, EveryPresetIsInRange) {

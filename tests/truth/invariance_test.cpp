@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include <fmt/format.h>
 
 #include "reference/device_variants.hpp"
@@ -126,6 +128,37 @@ TEST_F(Invariance, TileOverSamplesRadiusAndDivisor) {
             }
         }
     }
+}
+
+// Sets of pixels that share texels, around any of them: in parallel, where all of a picture is lit nearly alike, and
+// along a shared edge, where a set has points near and far. 4096 samples of 320 pixels are more choices than a launch
+// holds, so these come in bands of rows. Frames choose anew: eight of them.
+TEST_F(Invariance, CoherentOverSamplesMappingsRadiusAndDivisor) {
+    DrawnScene parallel(platesWith(kAbove)), perpendicular(platesWith(kBeside));
+    const Extent extent{320, 320};
+    const FrameImages above = parallel.draw(squareView(kAbove), extent, beamOnto(kEmitter, kLux, 1.0), 256);
+    const FrameImages beside = perpendicular.draw(squareView(kBeside), extent, beamOnto(kEmitter, kLux, 1.0), 256);
+    const auto check = [&](int sampleCount, RadiusMapping mapping, double radiusUv, int divisor, int frames) {
+        Settings settings = wholeDisk(sampleCount, radiusUv);
+        settings.rotation = Rotation::Coherent;
+        settings.mapping = mapping;
+        settings.divisor = divisor;
+        settings.animatesNoise = true;
+        const std::string what =
+            fmt::format("_{}_1/{}_{}spp_radius_{}", kRadiusMappingNames[int(mapping)], divisor, sampleCount, radiusUv);
+        for (const auto& [name, frame, truth] :
+             {std::tuple("parallel", &above, 0.199825), {"perpendicular", &beside, 0.200044}}) {
+            if (mapping == RadiusMapping::Area && sampleCount < 4096 && frame == &beside) continue;  // misses the peak
+            double sum = 0.0;
+            for (int i = 0; i < frames; ++i) sum += formFactor(*frame, settings) / frames;
+            expectTruth(name + what, sum, truth, kBar);
+        }
+    };
+    for (const RadiusMapping mapping : {RadiusMapping::Area, RadiusMapping::Polar, RadiusMapping::Squared})
+        for (const int sampleCount : {8, 64}) check(sampleCount, mapping, 1.4142136, 1, 8);
+    check(64, RadiusMapping::Squared, 2.0, 1, 8);
+    check(64, RadiusMapping::Squared, 1.4142136, 2, 8);
+    check(4096, RadiusMapping::Area, 1.4142136, 1, 1);
 }
 
 // Along a shared edge what a point receives peaks beside its own projection, at the pattern's centre: there the radii

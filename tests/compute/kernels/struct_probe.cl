@@ -13,6 +13,7 @@
 #include "light_params.h"
 #include "modulate_params.h"
 #include "pick_grid.h"
+#include "rsm_choose_params.h"
 #include "rsm_gather_params.h"
 #include "rsm_pack_params.h"
 #include "rsm_sum_params.h"

@@ -55,6 +55,7 @@ struct Arguments {
     std::string device, out;
     Extent extent{1920, 1080};
     int rounds = 3;
+    bool groupsOnly = false;  ///< for the lanes and storage that the table has
 };
 
 /// One frame that is measured.
@@ -178,8 +179,11 @@ public:
                    caps_.platformName, caps_.driverVersion, arguments_.extent.widthPx, arguments_.extent.heightPx,
                    arguments_.rounds, table_.lanes, storageName(table_.storage), table_.localSizePx[0],
                    table_.localSizePx[1]);
-        const Candidate way = chooseWay();
-        return chooseGroups(way);
+        if (!arguments_.groupsOnly) return chooseGroups(chooseWay());
+        Candidate tables;
+        tables.lanes = table_.lanes;
+        tables.storage = storageName(table_.storage);
+        return chooseGroups(tables);
     }
 
 private:
@@ -447,6 +451,10 @@ Arguments parse(int argc, char** argv) {
         const std::string text = argv[i];
         char rest = 0;
         if (text == "--tune") continue;
+        if (text == "--groups-only") {
+            arguments.groupsOnly = true;
+            continue;
+        }
         if (const auto device = after(text, "--device=")) {
             arguments.device = *device;
         } else if (const auto out = after(text, "--out=")) {
@@ -465,7 +473,7 @@ Arguments parse(int argc, char** argv) {
                 throw UsageError(fmt::format("tune: --rounds={}: is not a number from 1 to 99", *rounds));
         } else {
             throw UsageError(
-                fmt::format("tune: '{}' is none of --device=NAME, --size=WxH, --rounds=N, --out FILE", text));
+                fmt::format("tune: '{}' is none of --device=NAME, --size=WxH, --rounds=N, --groups-only, --out FILE", text));
         }
     }
     return arguments;

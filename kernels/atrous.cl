@@ -8,6 +8,10 @@
 //   Below SMALLEST_FADE it is none, and where all lanes have none, neighbours are not read.
 //   reach is max(1, YOUNG_FRAMES / length) times as far: among few frames' outliers a mean over what is only near is the
 //   lesser error (a first frame of leaves and balusters: relMSE 0.71 without, 0.4 with it).
+//   A pixel that few of its taps share a surface with would stay as noisy as its samples: if limitsLone, it counts as no
+//   brighter than 2.5 + (length / 4)^2 times the mean luminance of all taps, whatever their surface, as far as its own
+//   make up less than LONE_SHARE of them; unless all else is dark. Of a still picture that takes next to no light; of thin
+//   bright things in motion it takes some.
 //   luminance: (l_p - l_q)^2 / (luminanceTolerance^2 variance of p's mean), coming in from 3 to 4 frames
 //   (Schied et al. 2017); a hundredth of l_p is never an edge, nor could 32 bits tell its variance.
 //   ATROUS_WEIGHTS_DEPTH is the field's usual weight, for comparison: e^(-|z_p - z_q| max(1/4, n_p.v) / (depthTolerance
@@ -26,6 +30,7 @@
 
 #define SMALLEST_FADE 0.1f
 #define YOUNG_FRAMES 8.0f
+#define LONE_SHARE 0.64f
 
 // Item i's row, of planes: those that are a multiple of `step` apart follow one another, so that a column's taps are rows
 // that were just read, however far apart they lie (at step 4: 0.7 of the time on a CPU). Images keep blocks together.
@@ -100,7 +105,7 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
 
     int spanPx = params.radiusX * params.stepPx;
     bool isInner = px.x >= spanPx && px.x + LANES + spanPx <= width;
-    vfloat sumWeights = 0.0f;
+    vfloat sumWeights = 0.0f, luminances = 0.0f, taps = 0.0f;
     vfloat3 sum = make3(0.0f, 0.0f, 0.0f);
     for (int j = -params.radiusY; j <= params.radiusY; ++j, slope += slopeY, offset += offsetY) {
         int y = px.y + j * params.stepPx;
@@ -116,10 +121,14 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
             vfloat turned = dot3(turn, turn) * inverseNormal;
             vmask isThere = tapDepth > 0.0f;
             if (!isInner) isThere &= (x + laneIndex() >= 0) & (x + laneIndex() < width);
-            vfloat weight;
+            vfloat weight, tapL = luminance(tap);
+            if (params.limitsLone) {
+                luminances += vselect(isThere, tapL, 0.0f);
+                taps += vselect(isThere, 1.0f, 0.0f);
+            }
             if (params.weights == ATROUS_WEIGHTS_PLANE) {
                 vfloat plane = vmad(tapDepth, slopeI, offsetI);
-                vfloat dl = luminance(tap) - l;
+                vfloat dl = tapL - l;
                 vfloat near = vmad(plane * plane, -inverseWay2, 1.0f - turned);  // 1 - t
                 near = max(vmad(-dl * dl, inverseVariance, near), 0.0f);
                 weight = near * near;
@@ -133,6 +142,12 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
         }
     }
     float centre = shareOf(&params, 0, params.radiusX) * shareOf(&params, 0, params.radiusY);
+    if (params.limitsLone) {
+        vfloat around = luminances / max(taps, 1.0f), limit = vmad(length * length, 1.0f / 16.0f, 2.5f) * around;
+        vfloat lone = max(1.0f - sumWeights / (LONE_SHARE * (1.0f - centre)), 0.0f);
+        vfloat excess = max(l - limit, 0.0f) / max(l, 1e-30f);
+        irradiance = scale3(1.0f - vselect(around > 0.0f, lone * excess, 0.0f), irradiance);
+    }
     sumWeights = vmad(fade, sumWeights, centre);
     sum = mad3(fade, sum, scale3(centre, irradiance));
     store3(outIrradiance, px, select3(isSurface, scale3(1.0f / sumWeights, sum), make3(0.0f, 0.0f, 0.0f)));

@@ -52,13 +52,13 @@ static SeenPlane seenPlane(const ViewRays* rays, vfloat x, vfloat y, vfloat dept
 
 // How far the pixel that is (dx, dy) away from the point saw the same: 0 = another surface, 1 = as it is.
 static vfloat likeness(const SeenPlane* p, const TemporalParams* params, float looseness, vfloat dx, vfloat dy,
-                           vfloat depth, vfloat3 normal) {
+                       vfloat depth, vfloat3 normal) {
     vfloat distance = (depth - p->depth) * p->slope;
     distance = vmad(dx, vmad(depth, p->slopeX, p->offsetX), distance);
     distance = vmad(dy, vmad(depth, p->slopeY, p->offsetY), distance);
     vfloat tolerance = looseness * params->planeTolerance * p->depth;
     vfloat3 turn = sub3(normal, p->normal);
-    vfloat like = max(1.0f - dot3(turn, turn) / params->normalTolerance, 0.0f);
+    vfloat like = max(1.0f - dot3(turn, turn) * (1.0f / params->normalTolerance), 0.0f);
     if (!params->weighsTurn) like = vselect(like > 0.0f, 1.0f, 0.0f);
     return vselect((depth > 0.0f) & (fabs(distance) <= tolerance), like, 0.0f);
 }

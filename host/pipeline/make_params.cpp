@@ -52,7 +52,7 @@ float fadeFrames(const Settings& settings, int iteration) {
     if (settings.filterFade >= kNever) return kNever;
     // A step is twice as wide as the one before: it must fade twice as fast, or it blurs what frames made clean. From
     // four pixels on it crosses more edges of light than it finds noise as soon as there are some frames: eight times
-    // as fast, and a first frame has half of it. (Orbit of a game level, relMSE of the eighth frame: 0.0256 without.)
+    // as fast, and a first frame has half of it. (Eighth frame of an orbit of a game level: relMSE 0.018, else 0.026.)
     const float frames = std::ldexp(settings.filterFade, iteration < 2 ? -iteration : -iteration - 2);
     return std::max(frames, 0.5f);
 }
@@ -70,8 +70,7 @@ std::vector<AtrousParams> filterPasses(const Settings& settings, const FrameGeom
         // Each iteration leaves less noise: a fourth of the variance, or so.
         p.luminanceTolerance = keepsMoment(settings) ? std::ldexp(settings.filterLuminance, -i) : 0.0f;
         p.fadeFrames = fadeFrames(settings, i);
-        // History would lose for good what its filter takes; it gives back what the picture's filter took while it is
-        // short.
+        // What it takes, history gives back as it grows: so only with one, and not in what that remembers.
         p.limitsLone = settings.accumulates && settings.feedback == 0 && i == 0 && p.weights == ATROUS_WEIGHTS_PLANE;
         p.footprintM = lengthOf(frame.cameraRays.originDx);
         p.footprintPerM = lengthOf(frame.cameraRays.rayDx);

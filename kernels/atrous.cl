@@ -104,6 +104,7 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
     if (params.weights == ATROUS_WEIGHTS_DEPTH) cosine = max(-along * rsqrt(dot3(ray, ray)), 0.25f);
 
     int spanPx = params.radiusX * params.stepPx;
+    bool limitsLone = params.limitsLone != 0;
     bool isInner = px.x >= spanPx && px.x + LANES + spanPx <= width;
     vfloat sumWeights = 0.0f, luminances = 0.0f, taps = 0.0f;
     vfloat3 sum = make3(0.0f, 0.0f, 0.0f);
@@ -122,7 +123,7 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
             vmask isThere = tapDepth > 0.0f;
             if (!isInner) isThere &= (x + laneIndex() >= 0) & (x + laneIndex() < width);
             vfloat weight, tapL = luminance(tap);
-            if (params.limitsLone) {
+            if (limitsLone) {
                 luminances += vselect(isThere, tapL, 0.0f);
                 taps += vselect(isThere, 1.0f, 0.0f);
             }
@@ -142,7 +143,7 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
         }
     }
     float centre = shareOf(&params, 0, params.radiusX) * shareOf(&params, 0, params.radiusY);
-    if (params.limitsLone) {
+    if (limitsLone) {
         vfloat around = luminances / max(taps, 1.0f), limit = vmad(length * length, 1.0f / 16.0f, 2.5f) * around;
         vfloat lone = max(1.0f - sumWeights / (LONE_SHARE * (1.0f - centre)), 0.0f);
         vfloat excess = max(l - limit, 0.0f) / max(l, 1e-30f);

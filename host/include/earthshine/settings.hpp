@@ -108,7 +108,8 @@ struct Settings {
                                     ///< surface shows, and takes light away where few samples are bright (5 % at 8)
     float filterFade = 1024.0f;     ///< [1; 1024] (frames) - history longer than this weakens the filter in proportion,
                                     ///< a step of 2 px from half of it on, of 4 from a 16th, of 8 from a 32nd ...; an
-                                    ///< iteration that counts for less than a tenth is left out; 1024 = never
+                                    ///< iteration that counts for less than a tenth is left out; 1024 = never. What
+                                    ///< is left of noise goes by samples: 128 / spp is about right
     int feedback = 0;               ///< [0; 7] - accumulate: history remembers what this many filter iterations make
     float shadowBiasTexels = 0.5f;  ///< [0; 16] (shadow map texels) - depth bias, constant part
     float shadowSlopeBiasTexels = 1.5f;       ///< [0; 16] (shadow map texels) - depth bias a unit of slope

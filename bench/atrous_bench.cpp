@@ -24,6 +24,9 @@ constexpr double kDirection = 2 * (kDot3 + 1) + 2 * 2;
 // all three; its square; its share; sums.
 constexpr double kTap =
     2 + kSub3 + (kDot3 + 1) + kFma + (kLuminance + 1) + (1 + 1 + kFma) + (1 + kFma + 1) + 1 + 1 + 1 + kMad3;
+// In the first iteration, a lone pixel's limit: a tap's luminance and one more tap; their mean, the limit; how lone it
+// is, by how much too bright, what is left of it.
+constexpr double kLimitTap = 1 + 1, kLimit = 2 + (1 + kFma + 1) + 3 + 3 + (2 + kScale3);
 
 // bytes: depth and out at every pixel; irradiance, normals and length where there is no sky.
 Row atrous(const Variant& variant, Extent extent, FilterKernel kernel, std::size_t pass, bool isPair = false) {
@@ -44,7 +47,9 @@ Row atrous(const Variant& variant, Extent extent, FilterKernel kernel, std::size
                                 isPair ? stage->enqueuePair(images, params) : stage->enqueue(images, params);
                             }),
             .work = {.bytes = room.bytes({room.inputs.depth, out}, {in, room.inputs.normalWs, length}),
-                     .flops = (pixels * kPixel + directions * kDirection + taps * kTap) * room.seenPixels}};
+                     .flops = (pixels * kPixel + directions * kDirection + taps * kTap +
+                               (params.limitsLone ? pixels * kLimit + taps * kLimitTap : 0.0)) *
+                              room.seenPixels}};
 }
 
 }  // namespace

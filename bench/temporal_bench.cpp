@@ -14,13 +14,13 @@ namespace earthshine::bench {
 namespace {
 
 // The plane as it was seen: slope and offset, each a step along x and y. Is a tap on it: its distance at the point,
-// then a step along x and y, against a tolerance; the cosine. And what it adds.
-constexpr double kSeenPlane = 4 * kDot3 + (kDot3 + 2 * kFma), kTap = 2 + 4 * kFma + 1 + kDot3;
-constexpr double kAddTap = 1 + kMad3 + 2 * kFma;  // of the moment's zero too
+// then a step along x and y, against a tolerance; how its normal turned. And what it adds, as far as it is alike.
+constexpr double kSeenPlane = 4 * kDot3 + (kDot3 + 2 * kFma), kTap = 2 + 4 * kFma + 1 + (kSub3 + kDot3 + 2);
+constexpr double kAddTap = 1 + 1 + kMad3 + 2 + 2 * kFma;  // of the moment's zero too
 // 1 / weight, history by it, the new length and share, blend, change of luminance. (No confidence, no moments.)
 constexpr double kBlend = 2 + 3 + 1 + 2 + 1 + kSub3 + kMad3 + 2 * kLuminance + 1;
-// Depth then; the plane; a tap, of weight 1.
-constexpr double kStill = 2 + kSeenPlane + kTap + kBlend;
+// Depth then; the plane; a tap, as far as it is alike.
+constexpr double kStill = 2 + kSeenPlane + kTap + kScale3 + 3 + kBlend;
 // The same; where it was, kept in range; four taps, each with its place and bilinear weight.
 constexpr double kMoving = 2 + kSeenPlane + 6 + 2 + 4 * (2 + kTap + 3 + kAddTap) + kBlend;
 

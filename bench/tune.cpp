@@ -472,8 +472,8 @@ Arguments parse(int argc, char** argv) {
                 arguments.rounds > 99)
                 throw UsageError(fmt::format("tune: --rounds={}: is not a number from 1 to 99", *rounds));
         } else {
-            throw UsageError(
-                fmt::format("tune: '{}' is none of --device=NAME, --size=WxH, --rounds=N, --groups-only, --out FILE", text));
+            throw UsageError(fmt::format(
+                "tune: '{}' is none of --device=NAME, --size=WxH, --rounds=N, --groups-only, --out FILE", text));
         }
     }
     return arguments;

@@ -81,13 +81,25 @@ static RowPixel filterRow(INPUTS_IN, const AtrousParams* params, Pixel px, ReadP
         sumWeights += weight;
         sum = mad3(weight, irradiances[tap], sum);
     }
+    if (params->limitsLone) {
+        vfloat luminances = 0.0f, taps = 0.0f;
+#pragma unroll
+        for (int tap = 0; tap < 4; ++tap) {
+            vint x = px.x + wayOf(tap) * step + laneIndex();
+            vmask isThere = (depths[tap] > 0.0f) & (x >= 0) & (x < width);
+            luminances += vselect(isThere, luminance(irradiances[tap]), 0.0f);
+            taps += vselect(isThere, 1.0f, 0.0f);
+        }
+        r.irradiance =
+            limitedAlone(r.irradiance, read.length, sumWeights, 1.0f - params->share0, luminances, taps);
+    }
     r.irradiance = meanOf(params, r.point.fade, r.irradiance, sum, sumWeights);
     return r;
 }
 
-// Of the third of five rows, a step apart.
+// Of the third of five rows, a step apart; length: read only if limitsLone.
 static vfloat3 filterColumn(const RowPixel* above2, const RowPixel* above, const RowPixel* row, const RowPixel* below,
-                            const RowPixel* below2, const AtrousParams* params) {
+                            const RowPixel* below2, const AtrousParams* params, vfloat length) {
     const FilterPoint* p = &row->point;
     vmask isSurface = p->depth > 0.0f;
     vfloat3 mean = row->irradiance;
@@ -106,6 +118,16 @@ static vfloat3 filterColumn(const RowPixel* above2, const RowPixel* above, const
             vfloat weight = shareOf(params, j) * near * near;
             sumWeights += weight;
             sum = mad3(weight, q->irradiance, sum);
+        }
+        if (params->limitsLone) {
+            vfloat luminances = 0.0f, count = 0.0f;
+#pragma unroll
+            for (int tap = 0; tap < 4; ++tap) {
+                vmask isThere = taps[tap]->point.depth > 0.0f;
+                luminances += vselect(isThere, luminance(taps[tap]->irradiance), 0.0f);
+                count += vselect(isThere, 1.0f, 0.0f);
+            }
+            mean = limitedAlone(mean, length, sumWeights, 1.0f - params->share0, luminances, count);
         }
         mean = meanOf(params, p->fade, mean, sum, sumWeights);
     }
@@ -136,7 +158,10 @@ __kernel void atrous_pair(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURF
         row2 = row3;
         row3 = row4;
         row4 = filterRow(INPUTS_ARG, &params, px, read);
-        if (row >= 2) store3(outIrradiance, out, filterColumn(&row0, &row1, &row2, &row3, &row4, &params));
+        if (row < 2) continue;
+        vfloat length = 0.0f;
+        if (params.limitsLone) length = load1(inLength, out);
+        store3(outIrradiance, out, filterColumn(&row0, &row1, &row2, &row3, &row4, &params, length));
     }
 #else
     RowPixel rows[5][ATROUS_PAIR_STRIP(LANES)];  // row r is in r % 5
@@ -148,10 +173,13 @@ __kernel void atrous_pair(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURF
         if (row < 4) continue;
         px.x = left;
         px.y -= 2 * step;
-        for (int k = 0; k < ATROUS_PAIR_STRIP(LANES) && px.x < width; ++k, px.x += LANES)
+        for (int k = 0; k < ATROUS_PAIR_STRIP(LANES) && px.x < width; ++k, px.x += LANES) {
+            vfloat length = 0.0f;
+            if (params.limitsLone) length = load1(inLength, px);
             store3(outIrradiance, px,
                    filterColumn(&rows[(row + 1) % 5][k], &rows[(row + 2) % 5][k], &rows[(row + 3) % 5][k],
-                                &rows[(row + 4) % 5][k], &rows[row % 5][k], &params));
+                                &rows[(row + 4) % 5][k], &rows[row % 5][k], &params, length));
+        }
     }
 #endif
 }

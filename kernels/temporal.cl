@@ -2,6 +2,8 @@
 //   out = mix(history(x'), in, 1 / n),   n = min(c n_history(x') + 1, maxFrames)
 //   x' is where the point was in the previous frame (motion vectors); history there is a bilinear mean over those of the
 //   2 x 2 pixels around x' that saw the same surface: near the plane through the point as it was then, with a like normal.
+//   A tap turned by some counts for less, s = 1 - |n - n'|^2 / normalTolerance, and its frames for s^2 of theirs: where
+//   geometry is as fine as pixels, history of what only nearly fits is worth few frames, not all (weighsTurn; else 1).
 //   Where none did, a 3 x 3 search with looser bounds rescues what it can; where that finds nothing, n starts at 1.
 //   Nehab et al. 2007; Schied et al. 2017, who compare depths: a plane's distance is as strict on slopes as it is ahead.
 //   c is history_confidence's. A sample brighter than fireflyFactor times everything near it and than its history
@@ -48,16 +50,17 @@ static SeenPlane seenPlane(const ViewRays* rays, vfloat x, vfloat y, vfloat dept
     return p;
 }
 
-// Did the pixel that is (dx, dy) away from the point see it?
-static vmask isSameSurface(const SeenPlane* p, const TemporalParams* params, float looseness, vfloat dx, vfloat dy,
-                           vfloat depth, vfloat3 normal) {
+// How far the pixel that is (dx, dy) away from the point saw the same: 0 = another surface, 1 = as it is.
+static vfloat likeness(const SeenPlane* p, const TemporalParams* params, float looseness, vfloat dx, vfloat dy,
+                       vfloat depth, vfloat3 normal) {
     vfloat distance = (depth - p->depth) * p->slope;
     distance = vmad(dx, vmad(depth, p->slopeX, p->offsetX), distance);
     distance = vmad(dy, vmad(depth, p->slopeY, p->offsetY), distance);
     vfloat tolerance = looseness * params->planeTolerance * p->depth;
-    vmask isThere = depth > 0.0f, isOnPlane = fabs(distance) <= tolerance;
-    vmask isTurned = dot3(p->normal, normal) < params->minNormalCosine;
-    return vselectInt(isTurned, 0, isThere & isOnPlane);
+    vfloat3 turn = sub3(normal, p->normal);
+    vfloat like = max(1.0f - dot3(turn, turn) * (1.0f / params->normalTolerance), 0.0f);
+    if (!params->weighsTurn) like = vselect(like > 0.0f, 1.0f, 0.0f);
+    return vselect((depth > 0.0f) & (fabs(distance) <= tolerance), like, 0.0f);
 }
 
 // Adds the side x side pixels from (left, top) on that saw the same surface: bilinear weights for 2, for 3 what is
@@ -91,11 +94,11 @@ static void addTaps(History* h, SURFACE_IN(prevNormalWs), SURFACE_IN(prevDepth),
         }
         vfloat dx = toVfloat(x) - plane->x, dy = toVfloat(y) - plane->y;
         vfloat weight = side == 2 ? (1.0f - fabs(dx)) * (1.0f - fabs(dy)) : 1.0f / (1.0f + dx * dx + dy * dy);
-        vmask isSame = isInside & isSameSurface(plane, params, looseness, dx, dy, depth, normal);
-        weight = vselect(isSame, weight, 0.0f);
+        vfloat like = likeness(plane, params, looseness, dx, dy, depth, normal);
+        weight = vselect(isInside, weight * like, 0.0f);
         h->weight += weight;
         h->irradiance = mad3(weight, irradiance, h->irradiance);
-        h->length = vmad(weight, length, h->length);
+        h->length = vmad(weight * like * like, length, h->length);
         h->moment = vmad(weight, moment, h->moment);
     }
 }
@@ -174,12 +177,12 @@ __kernel void temporal(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE
         vint left = toVint(floor(fx)), top = toVint(floor(fy));
         SeenPlane plane = seenPlane(&params.previousRays, fx, fy, max(depth + motion.z, 0.0f), normalWs);
         if (!anyLane(moves)) {
-            vmask isSame = isSurface & isSameSurface(&plane, &params, 1.0f, 0.0f, 0.0f, load1(prevDepth, px),
-                                                     load3(prevNormalWs, px));
-            h.weight = vselect(isSame, 1.0f, 0.0f);
-            h.irradiance = load3(historyIrradiance, px);
-            h.length = load1(historyLength, px);
-            if (params.keepsMoment) h.moment = load1(historyMoment, px);
+            vfloat like =
+                likeness(&plane, &params, 1.0f, 0.0f, 0.0f, load1(prevDepth, px), load3(prevNormalWs, px));
+            h.weight = vselect(isSurface, like, 0.0f);
+            h.irradiance = scale3(h.weight, load3(historyIrradiance, px));
+            h.length = h.weight * like * like * load1(historyLength, px);
+            if (params.keepsMoment) h.moment = h.weight * load1(historyMoment, px);
         }
         // First the four around; then, for what they know nothing of, the nine.
         for (int side = anyLane(moves) ? 2 : 3; side <= 3; ++side) {

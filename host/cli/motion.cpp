@@ -9,6 +9,9 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -45,7 +48,10 @@ struct MotionArguments {
 
 constexpr double kJumpDeg = 60.0;    // how far the sun's azimuth jumps
 constexpr int kFramesAfterJump = 8;  // after so many there should be no ghost
-constexpr float kSameDepth = 0.02f;  // of the depth: where a pixel of the previous frame shows the same surface
+// A pixel of the previous frame shows the same surface if its point lies within half a pixel's width of the plane
+// through the reprojected one, and its normal is turned by less than 8 degrees (squared difference). What changes where
+// another leaf comes into a pixel's middle is no flicker: it is the picture.
+constexpr double kSamePlanePx = 0.5, kSameTurn = 0.02;
 
 struct MotionRow {
     const QualitySetting* setting = nullptr;
@@ -66,27 +72,79 @@ HostImage surfaceMask(const HostImage& depth) {
     return mask;
 }
 
-/// Mean |now - before| of luminance over the pixels whose point the previous frame saw, and the mean of `now` there.
-struct Change {
-    double difference = 0.0, mean = 0.0;
-    double ratio() const { return mean > 0.0 ? difference / mean : 0.0; }
+int surfacePixels(const HostImage& mask) {
+    int pixels = 0;
+    for (int y = 0; y < mask.extent().heightPx; ++y)
+        for (int x = 0; x < mask.extent().widthPx; ++x) pixels += *mask.pixel(x, y) > 0.0f;
+    return pixels;
+}
+
+/// What a frame saw, for the next one to find again.
+struct Sight {
+    Sight() = default;
+    explicit Sight(const FrameImages& frame)
+        : viewFromClip(glm::inverse(glm::dmat4(frame.camera.clipFromView))),
+          worldFromView(glm::inverse(glm::dmat4(frame.camera.viewFromWorld))),
+          depth(toFloat(frame.depth.view())),
+          normalWs(toFloat(frame.normalWs.view())) {}
+
+    /// The point at a place of the picture, px, and m along the camera's -z.
+    glm::dvec3 pointWs(double x, double y, double z) const {
+        const double xNdc = 2.0 * (x + 0.5) / depth.extent().widthPx - 1.0;
+        const double yNdc = 1.0 - 2.0 * (y + 0.5) / depth.extent().heightPx;
+        // Two points of the pixel's line, whatever the projection, then the one at that depth.
+        glm::dvec4 a = viewFromClip * glm::dvec4(xNdc, yNdc, -0.5, 1.0),
+                   b = viewFromClip * glm::dvec4(xNdc, yNdc, 0.5, 1.0);
+        a /= a.w;
+        b /= b.w;
+        return glm::dvec3(worldFromView * glm::mix(a, b, (-z - a.z) / (b.z - a.z)));
+    }
+    glm::dvec3 normal(int x, int y) const {
+        const float* n = normalWs.pixel(x, y);
+        return {n[0], n[1], n[2]};
+    }
+
+    glm::dmat4 viewFromClip{1.0}, worldFromView{1.0};
+    HostImage depth, normalWs;
 };
-Change changeOf(const HostImage& now, const HostImage& before, const FrameImages& frame, const HostImage& motion,
-                const HostImage& depthBefore) {
-    const Extent e = now.extent();
-    Change change;
+
+/// The pixels whose surface the previous frame saw in the pixel that they come from.
+struct Match {
+    int x, y, previousX, previousY;
+};
+std::vector<Match> matchesOf(const Sight& now, const Sight& before, const HostImage& motion) {
+    const Extent e = now.depth.extent();
+    std::vector<Match> matches;
     for (int y = 0; y < e.heightPx; ++y) {
         for (int x = 0; x < e.widthPx; ++x) {
-            const float depth = *frame.depth.pixel(x, y);
             const float* m = motion.pixel(x, y);
-            const int px = int(std::lround(float(x) + m[0])), py = int(std::lround(float(y) + m[1]));
-            if (!(depth > 0.0f) || px < 0 || py < 0 || px >= e.widthPx || py >= e.heightPx) continue;
-            if (std::fabs(*depthBefore.pixel(px, py) - (depth + m[2])) > kSameDepth * depth) continue;
-            change.difference += double(std::fabs(luminanceAt(now, x, y) - luminanceAt(before, px, py)));
-            change.mean += double(luminanceAt(now, x, y));
+            const Match match{x, y, int(std::lround(float(x) + m[0])), int(std::lround(float(y) + m[1]))};
+            if (!(*now.depth.pixel(x, y) > 0.0f) || match.previousX < 0 || match.previousY < 0 ||
+                match.previousX >= e.widthPx || match.previousY >= e.heightPx)
+                continue;
+            const double depth = double(*now.depth.pixel(x, y) + m[2]);
+            const double seen = double(*before.depth.pixel(match.previousX, match.previousY));
+            const glm::dvec3 then = before.pointWs(double(x) + double(m[0]), double(y) + double(m[1]), depth);
+            const glm::dvec3 there = before.pointWs(match.previousX, match.previousY, seen);
+            const glm::dvec3 n = now.normal(x, y), turn = before.normal(match.previousX, match.previousY) - n;
+            const double pixelM = glm::length(before.pointWs(1.0, 0.0, depth) - before.pointWs(0.0, 0.0, depth));
+            if (seen > 0.0 && std::fabs(glm::dot(n, there - then)) <= kSamePlanePx * pixelM &&
+                glm::dot(turn, turn) <= kSameTurn)
+                matches.push_back(match);
         }
     }
-    return change;
+    return matches;
+}
+
+/// Mean |now - before| of luminance over the matches, over the mean of `now` there.
+double changeOf(const HostImage& now, const HostImage& before, const std::vector<Match>& matches) {
+    double difference = 0.0, sum = 0.0;
+    for (const Match& m : matches) {
+        const double l = double(luminanceAt(now, m.x, m.y));
+        difference += std::fabs(l - double(luminanceAt(before, m.previousX, m.previousY)));
+        sum += l;
+    }
+    return sum > 0.0 ? difference / sum : 0.0;
 }
 
 double meanOf(const Series& series) {
@@ -108,6 +166,7 @@ struct MotionResult {
     const QualityScene* scene;
     std::vector<MotionRow> rows;
     double truthFlicker = 0.0;
+    double countedShare = 0.0;  ///< of the pixels that see a surface, those that count for flicker
 };
 
 MotionResult measureScene(const QualityScene& scene, const QualityList& list, const MotionArguments& arguments,
@@ -128,10 +187,11 @@ MotionResult measureScene(const QualityScene& scene, const QualityList& list, co
     std::vector<std::unique_ptr<Runner>> runners;
     for (const QualitySetting& setting : list.settings) runners.push_back(std::make_unique<Runner>(device, setting));
 
-    MotionResult result{&scene, {}, 0.0};
+    MotionResult result{&scene, {}, 0.0, 0.0};
     Camera previous = start;
-    HostImage depthBefore, truthBefore;
-    Series truthFlicker;
+    Sight sightBefore;
+    HostImage truthBefore;
+    Series truthFlicker, counted;
     Progress progress(scene.name);
     for (int i = 0; i < arguments.frameCount; ++i) {
         const bool hasJumped = arguments.jumpFrame > 0 && i >= arguments.jumpFrame;
@@ -142,7 +202,8 @@ MotionResult measureScene(const QualityScene& scene, const QualityList& list, co
         const FrameImages images =
             readBack(renderer.render(camera, previous, lights, settings), camera, lights, context.getProcAddress());
         previous = camera;
-        const HostImage mask = surfaceMask(images.depth), motion = toFloat(images.motion.view());
+        const HostImage mask = surfaceMask(images.depth);
+        Sight sight(images);
         CompareOptions compare;
         compare.mask = mask.view();
 
@@ -150,8 +211,12 @@ MotionResult measureScene(const QualityScene& scene, const QualityList& list, co
         truth.run(fullSum);
         HostImage expected = truth.read(Output::IndirectIrradiance);
         const bool isContinuous = i > 0 && i != arguments.jumpFrame;
-        if (isContinuous)
-            truthFlicker.ms.push_back(changeOf(expected, truthBefore, images, motion, depthBefore).ratio());
+        std::vector<Match> matches;
+        if (isContinuous) {
+            matches = matchesOf(sight, sightBefore, toFloat(images.motion.view()));
+            truthFlicker.ms.push_back(changeOf(expected, truthBefore, matches));
+            counted.ms.push_back(double(matches.size()) / double(std::max(surfacePixels(mask), 1)));
+        }
         for (const auto& runner : runners) {
             runner->pipeline.setFrame(images.inputs());
             runner->pipeline.run(runner->row.setting->settings);
@@ -161,8 +226,7 @@ MotionResult measureScene(const QualityScene& scene, const QualityList& list, co
             row.relMse.ms.push_back(errors.relMse);
             row.hdrFlip.ms.push_back(errors.hdrFlipMean);
             if (i > 0) row.indirectMs.ms.push_back(indirectMs(runner->pipeline.stageTimes()));
-            if (isContinuous)
-                row.flicker.ms.push_back(changeOf(picture, runner->before, images, motion, depthBefore).ratio());
+            if (isContinuous) row.flicker.ms.push_back(changeOf(picture, runner->before, matches));
             if (hasJumped && i < arguments.jumpFrame + kFramesAfterJump) {
                 if (!runner->fresh) runner->fresh.emplace(device);
                 runner->fresh->setFrame(images.inputs());
@@ -175,21 +239,23 @@ MotionResult measureScene(const QualityScene& scene, const QualityList& list, co
             }
             runner->before = std::move(picture);
         }
-        depthBefore = toFloat(images.depth.view());
+        sightBefore = std::move(sight);
         truthBefore = std::move(expected);
         progress.update((i + 1.0) / arguments.frameCount);
     }
     for (const auto& runner : runners) result.rows.push_back(std::move(runner->row));
     result.truthFlicker = meanOf(truthFlicker);
+    result.countedShare = meanOf(counted);
     return result;
 }
 
 std::string tableOf(const MotionResult& result, const MotionArguments& arguments) {
     std::string text = fmt::format(
-        "\n## {}, orbit of {} degrees a frame\n\nThe full sum's own flicker: {:.4f}.\n\n| setting | ms | relMSE | "
+        "\n## {}, orbit of {} degrees a frame\n\nThe full sum's own flicker: {:.4f}, over {:.1f} % of the pixels.\n\n| "
+        "setting | ms | relMSE | "
         "HDR-FLIP | "
         "flicker |{}\n|---|---:|---:|---:|---:|{}\n",
-        result.scene->name, arguments.orbitDegPerFrame, result.truthFlicker,
+        result.scene->name, arguments.orbitDegPerFrame, result.truthFlicker, 100.0 * result.countedShare,
         arguments.jumpFrame > 0 ? " relMSE 8 frames after the sun jumped | with no past |" : "",
         arguments.jumpFrame > 0 ? "---:|---:|" : "");
     for (const MotionRow& row : result.rows) {
@@ -215,7 +281,10 @@ nlohmann::ordered_json jsonOf(const MotionResult& result) {
         }
         rows.push_back(std::move(json));
     }
-    return {{"scene", result.scene->name}, {"fullSumFlicker", result.truthFlicker}, {"rows", std::move(rows)}};
+    return {{"scene", result.scene->name},
+            {"fullSumFlicker", result.truthFlicker},
+            {"flickerPixels", result.countedShare},
+            {"rows", std::move(rows)}};
 }
 
 void measureMotion(const MotionArguments& arguments) {
@@ -241,7 +310,7 @@ void measureMotion(const MotionArguments& arguments) {
     fmt::print(
         "Means over {} frames of {}x{} against the full sum of each frame; flicker: mean change of luminance from a "
         "frame to "
-        "the next at the same point, over the mean. {}, {}.\n",
+        "the next where both see the same surface, over the mean. {}, {}.\n",
         arguments.frameCount, arguments.size.widthPx, arguments.size.heightPx, programVersion(), device.caps().name);
     for (const QualityScene& scene : list.scenes) {
         const MotionResult result = measureScene(scene, list, arguments, *context, device);

@@ -32,16 +32,29 @@ TemporalParams temporalParams(const Settings& settings, const FrameGeometry& fra
     // How far off its plane a surface may be found again: depths of 32 bits and motion of 16 are that wrong, and curved
     // surfaces that flat, from one pixel to the next.
     constexpr float kPlaneTolerance = 0.01f;  // of the distance
-    constexpr float kMinNormalCosine = 0.8f;
+    // Squared differences of normals: 26 degrees, coming in from 0 on; without weighing 37.
+    constexpr float kWeighedNormalTolerance = 0.2f, kNormalTolerance = 0.4f;
     TemporalParams p{};
     p.previousRays = frame.previousRays;
     p.hasHistory = settings.accumulates && frame.hasHistory ? 1 : 0;
     p.usesConfidence = p.hasHistory != 0 && settings.antiLag > 0.0f && frame.hasConfidence ? 1 : 0;
     p.maxFrames = float(settings.historyFrames);
     p.planeTolerance = kPlaneTolerance;
-    p.minNormalCosine = kMinNormalCosine;
+    p.weighsTurn = settings.filterWeights == FilterWeights::Plane ? 1 : 0;
+    p.normalTolerance = p.weighsTurn ? kWeighedNormalTolerance : kNormalTolerance;
     p.fireflyFactor = settings.fireflyFactor;
     return p;
+}
+
+// What history an iteration's neighbours count in full up to.
+float fadeFrames(const Settings& settings, int iteration) {
+    constexpr float kNever = 1024.0f;  // the setting's largest
+    if (settings.filterFade >= kNever) return kNever;
+    // A step is twice as wide as the one before: it must fade twice as fast, or it blurs what frames made clean. From
+    // four pixels on it crosses more edges of light than it finds noise as soon as there are some frames: eight times
+    // as fast, and a first frame has half of it. (Eighth frame of an orbit of a game level: relMSE 0.018, else 0.026.)
+    const float frames = std::ldexp(settings.filterFade, iteration < 2 ? -iteration : -iteration - 2);
+    return std::max(frames, 0.5f);
 }
 
 // The passes of all iterations in order: one each, or a row and a column.
@@ -57,8 +70,9 @@ std::vector<AtrousParams> filterPasses(const Settings& settings, const FrameGeom
         p.inverseStep = 1.0f / float(p.stepPx);
         // Each iteration leaves less noise: a fourth of the variance, or so.
         p.luminanceTolerance = keepsMoment(settings) ? std::ldexp(settings.filterLuminance, -i) : 0.0f;
-        // A step is twice as wide as the one before: it must fade twice as fast, or it blurs what frames made clean.
-        p.fadeFrames = std::max(std::ldexp(settings.filterFade, -i), 1.0f);
+        p.fadeFrames = fadeFrames(settings, i);
+        // What it takes, history gives back as it grows: so only with one, and not in what that remembers.
+        p.limitsLone = settings.accumulates && settings.feedback == 0 && i == 0 && p.weights == ATROUS_WEIGHTS_PLANE;
         p.footprintM = lengthOf(frame.cameraRays.originDx);
         p.footprintPerM = lengthOf(frame.cameraRays.rayDx);
         const bool isSmall = settings.filterKernel == FilterKernel::Square3x3;

@@ -27,11 +27,12 @@ typedef struct AtrousParams {
     f32 depthTolerance;         // > 0; plane: metres off the plane a metre aside; depth: m a step
     f32 inverseNormalTolerance; // 1 / squared difference of unit normals
     f32 luminanceTolerance;     // 0 = off, else standard deviations of the accumulated luminance
-    f32 fadeFrames;             // >= 1: longer history weakens the taps in proportion
+    f32 fadeFrames;             // > 0: longer history weakens the taps in proportion
     f32 footprintM;             // width of a pixel: footprintM + depth footprintPerM
     f32 footprintPerM;
     f32 inverseStep;            // 1 / stepPx
-    i32 padding0, padding1;
+    i32 limitsLone;             // 0 or 1: is a lone pixel limited by what is around it?
+    i32 padding0;
 } AtrousParams;
 ES_ASSERT_SIZE(AtrousParams, 160);
 

@@ -80,7 +80,11 @@ FrameImages wallsFrame(const Walls& walls) {
             const auto depthAt = [&](double px, double py) { return -distance / glm::dot(n, rayAt(px, py)); };
             const double depth = depthAt(x, y);
             *z = float(depth);
-            const glm::dvec3 world = worldFromView * n;
+            const auto roughness = [&](int i) {
+                return (walls.isRough ? 0.6 : 0.0) * std::sin(x * 12.9 + y * 78.2 + i);
+            };
+            const glm::dvec3 turned = glm::normalize(n + glm::dvec3(roughness(0), roughness(2), roughness(4)));
+            const glm::dvec3 world = worldFromView * turned;
             for (int c = 0; c < 3; ++c) normal.pixel(x, y)[c] = float(world[c]);
             normal.pixel(x, y)[3] = 1.0f;
             float* m = motion.pixel(x, y);
@@ -140,14 +144,15 @@ Memory accumulate(const FrameImages& f, const FrameImages& before, const Memory&
                     for (int tx = firstX; tx < firstX + side; ++tx) {
                         if (tx < 0 || ty < 0 || tx >= e.widthPx || ty >= e.heightPx) continue;
                         const SurfacePoint& tap = pointsBefore[std::size_t(ty * e.widthPx + tx)];
-                        const glm::dvec3 n = points[at].normal;
-                        if (!tap.isValid || glm::dot(n, tap.normal) < 0.8 ||
-                            std::fabs(glm::dot(n, tap.position - then)) > looseness * 0.01 * depthThen)
+                        const glm::dvec3 n = points[at].normal, turn = tap.normal - n;
+                        double like = std::max(1.0 - glm::dot(turn, turn) / (t.weighsTurn ? 0.2 : 0.4), 0.0);
+                        if (!t.weighsTurn && like > 0.0) like = 1.0;
+                        if (!tap.isValid || std::fabs(glm::dot(n, tap.position - then)) > looseness * 0.01 * depthThen)
                             continue;
-                        const double w = weightOf(tx, ty);
+                        const double w = weightOf(tx, ty) * like;
                         weight += w;
                         sum += w * past.irradiance[std::size_t(ty * e.widthPx + tx)];
-                        length += w * past.length[std::size_t(ty * e.widthPx + tx)];
+                        length += w * like * like * past.length[std::size_t(ty * e.widthPx + tx)];
                         moment += w * past.moment[std::size_t(ty * e.widthPx + tx)];
                     }
                 }
@@ -197,25 +202,28 @@ std::vector<glm::dvec3> filterPass(const FrameImages& f, const std::vector<glm::
             const double z = double(*f.depth.pixel(x, y));
             const auto at = std::size_t(y * e.widthPx + x);
             const double length = memory ? memory->length[at] : 1.0, l = luminanceOf(in[at]);
-            double fade =
-                std::min(std::max(double(settings.filterFade) / step, 1.0) / length, 1.0);  // of a step twice as wide
+            // Of a step twice as wide; from four pixels on of eight times as much.
+            const double fullFrames = std::max(double(settings.filterFade) / (step < 4 ? step : 4 * step), 0.5);
+            double fade = settings.filterFade < 1024.0f ? std::min(fullFrames / length, 1.0) : 1.0;
             if (fade < 0.1) fade = 0.0;
             const double variance = memory ? std::max(memory->moment[at] - l * l, 0.0) / length : 0.0;
             const double deviations = double(settings.filterLuminance) / step;  // an iteration has twice the step
             const double guidance = deviations > 0.0 ? std::clamp(length - 3.0, 0.0, 1.0) : 0.0;
-            double weights = 0.0;
+            double weights = 0.0, ownShare = 0.0, luminances = 0.0, taps = 0.0;
             glm::dvec3 sum(0.0);
+            const double centre = (radiusX > 0 ? kernel(0) : 1.0) * (radiusY > 0 ? kernel(0) : 1.0);
             for (int j = -radiusY; j <= radiusY; ++j) {
                 for (int i = -radiusX; i <= radiusX; ++i) {
+                    if (i == 0 && j == 0) continue;
                     const int tx = x + i * step, ty = y + j * step;
                     if (tx < 0 || ty < 0 || tx >= e.widthPx || ty >= e.heightPx) continue;
                     const auto tap = std::size_t(ty * e.widthPx + tx);
                     if (!points[tap].isValid) continue;
-                    double w = 1.0;
+                    double w = 0.0;
                     const double steps = std::hypot(i, j), turned = 2.0 *
                                                                     (1.0 - glm::dot(points[tap].normal, p.normal)) /
                                                                     double(settings.filterNormal);
-                    if (steps > 0.0 && settings.filterWeights == FilterWeights::Plane) {
+                    if (settings.filterWeights == FilterWeights::Plane) {
                         const double reach =
                             double(settings.filterDepth) * std::max(8.0 / length, 1.0) * footprint * z * steps * step;
                         const double plane = glm::dot(p.normal, points[tap].position - p.position) / reach;
@@ -223,18 +231,28 @@ std::vector<glm::dvec3> filterPass(const FrameImages& f, const std::vector<glm::
                         const double brighter =
                             guidance * dl * dl / (deviations * deviations * variance + 1e-4 * l * l + 1e-30);
                         w = std::pow(std::max(1.0 - plane * plane - turned - brighter, 0.0), 2.0);
-                    } else if (steps > 0.0) {
+                    } else {
                         const double cosine = std::max(glm::dot(p.normal, glm::normalize(eye - p.position)), 0.25);
                         const double dz = std::fabs(double(*f.depth.pixel(tx, ty)) - z);
                         w = std::exp(-dz * cosine / (double(settings.filterDepth) * steps) - turned);
                     }
-                    if (steps > 0.0) w *= fade;
                     w *= (radiusX > 0 ? kernel(i) : 1.0) * (radiusY > 0 ? kernel(j) : 1.0);
-                    weights += w;
-                    sum += w * in[tap];
+                    ownShare += w / (1.0 - centre);
+                    luminances += luminanceOf(in[tap]);
+                    taps += 1.0;
+                    weights += fade * w;
+                    sum += fade * w * in[tap];
                 }
             }
-            out[std::size_t(y * e.widthPx + x)] = sum / weights;
+            // Among few of its own, a young pixel is about as bright as what is around it.
+            glm::dvec3 own = in[at];
+            const bool isLimited = settings.accumulates && settings.feedback == 0 && step == 1 &&
+                                   settings.filterWeights == FilterWeights::Plane;
+            if (isLimited && luminances > 0.0 && l > 0.0) {
+                const double limit = (2.5 + length * length / 16.0) * luminances / taps;
+                own *= 1.0 - std::max(1.0 - ownShare / 0.64, 0.0) * std::max(1.0 - limit / l, 0.0);
+            }
+            out[at] = (sum + centre * own) / (weights + centre);
         }
     }
     return out;

@@ -23,6 +23,7 @@ struct Walls {
     bool slides = true;
     bool hasStandingBlock = false;
     Move before{1.0}, now{1.0};
+    bool isRough = false;  ///< normals turned by up to a radian, each pixel's own way
 };
 
 FrameImages wallsFrame(const Walls& walls);
@@ -38,6 +39,7 @@ struct Temporal {
     double maxFrames = 32.0;
     double fireflyFactor = 0.0;  ///< 0 = none
     double antiLag = 0.0;        ///< 0 = off
+    bool weighsTurn = true;      ///< taps that are turned count for less
 };
 
 /// temporal.cl. `before` is the frame that left `past`.

@@ -40,6 +40,12 @@ std::vector<glm::dvec3> colors(const HostImage& image) {
     return result;
 }
 
+double meanOf(const std::vector<glm::dvec3>& picture) {
+    double sum = 0.0;
+    for (const glm::dvec3& e : picture) sum += luminanceOf(e);
+    return sum / double(picture.size());
+}
+
 void expectNear(const HostImage& actual, const std::vector<glm::dvec3>& expected) {
     double mean = 0.0;
     for (const glm::dvec3& e : expected) mean += (e.x + e.y + e.z) / 3.0 / double(expected.size());
@@ -78,7 +84,8 @@ void followFrames(const Device& device, const std::vector<const FrameImages*>& f
         denoised.run(settings);
         memory =
             accumulate(*frames[i], *frames[i > 0 ? i - 1 : 0], memory, colors(raw.read(Output::IndirectIrradiance)),
-                       {double(settings.historyFrames), double(settings.fireflyFactor), double(settings.antiLag)});
+                       {double(settings.historyFrames), double(settings.fireflyFactor), double(settings.antiLag),
+                        settings.filterWeights == FilterWeights::Plane});
         expectNear(denoised.read(Output::IndirectIrradiance), memory.irradiance);
     }
 }
@@ -117,6 +124,23 @@ TEST_P(Denoiser, HistoryFollowsACameraThatMoves) {
     followFrames(device_, all, fewSamples());
 }
 
+// Normals that differ from pixel to pixel, as of leaves: a tap that is turned counts for less, and for fewer frames;
+// for comparison with the field's weights, up to an angle in full.
+TEST_P(Denoiser, HistoryOfWhatIsTurnedCountsForLess) {
+    Settings settings = fewSamples();
+    settings.historyFrames = 6;
+    for (const FilterWeights weights : {FilterWeights::Plane, FilterWeights::Depth}) {
+        SCOPED_TRACE(kFilterWeightsNames[int(weights)]);
+        settings.filterWeights = weights;
+        const FrameImages rough = wallsFrame({{53, 37}, true, true, Move(1.0), Move(1.0), true});
+        followFrames(device_, std::vector(6, &rough), settings);
+        // What rests, but has turned; and what has not, whose normals of 16 bits are not quite of length 1.
+        FrameImages smooth = wallsFrame({{53, 37}, false});
+        FrameImages turned = wallsFrame({{53, 37}, false, false, Move(1.0), Move(1.0), true});
+        followFrames(device_, {&smooth, &smooth, &turned, &turned, &turned, &smooth}, settings);
+    }
+}
+
 // With a bound that noise reaches, all degrees of confidence occur.
 TEST_P(Denoiser, HistoryIsBelievedAsFarAsItFits) {
     Settings settings = fewSamples();
@@ -139,6 +163,7 @@ TEST_P(Denoiser, AnotherSizeOrSettingBeginsAnew) {
     guided = half = plain;
     guided.filterIterations = 1;
     guided.filterLuminance = 2.0f;
+    guided.feedback = 1;  // else lone pixels are limited in one of the pictures that are compared below
     half.divisor = 2;
     Pipeline raw(device_), denoised(device_);
     const auto see = [&](const FrameImages& frame, Settings settings) {
@@ -184,6 +209,52 @@ TEST_P(Denoiser, FirefliesAreLimitedAndTheirMomentsGuideTheFilter) {
             if (feedback > 0) memory.irradiance = once;
         }
     }
+}
+
+// Among normals that differ from pixel to pixel many pixels have no neighbour of their own: while they are young they
+// are limited by what is around them, in the picture only. History is not, nor is a picture that no history will
+// correct; and of a picture at rest next to nothing is taken once its history is long.
+TEST_P(Denoiser, LonePixelsAreLimitedWhileTheyAreYoung) {
+    const FrameImages frame = wallsFrame({{53, 37}, false, false, Move(1.0), Move(1.0), true});
+    Pipeline raw(device_), denoised(device_);
+    raw.setFrame(frame.inputs());
+    denoised.setFrame(frame.inputs());
+    const auto compare = [&](FilterKernel kernel, bool accumulates, int frames) {
+        SCOPED_TRACE(testing::Message() << kFilterKernelNames[int(kernel)] << ", accumulate " << accumulates);
+        Settings settings = fewSamples();
+        settings.accumulates = accumulates;
+        settings.filterIterations = 1;
+        settings.filterKernel = kernel;
+        Settings unlimited = settings;
+        unlimited.accumulates = false;
+        Memory memory;
+        raw.forgetHistory();
+        denoised.forgetHistory();
+        std::vector<double> taken;  // of the picture's light
+        for (int i = 0; i < frames; ++i) {
+            SCOPED_TRACE(testing::Message() << "frame " << i);
+            raw.run(fewSamples());
+            denoised.run(settings);
+            memory = accumulate(frame, frame, accumulates ? memory : Memory{},
+                                colors(raw.read(Output::IndirectIrradiance)), {});
+            const auto filtered = [&](const Settings& s) {
+                if (kernel == FilterKernel::Separable)
+                    return filterPass(frame, filterPass(frame, memory.irradiance, s, 2, 0, 1, &memory), s, 0, 2, 1,
+                                      &memory);
+                const int radius = kernel == FilterKernel::Square3x3 ? 1 : 2;
+                return filterPass(frame, memory.irradiance, s, radius, radius, 1, &memory);
+            };
+            const std::vector<glm::dvec3> expected = filtered(settings);
+            expectNear(denoised.read(Output::IndirectIrradiance), expected);
+            taken.push_back(1.0 - meanOf(expected) / meanOf(filtered(unlimited)));
+        }
+        return taken;
+    };
+    for (const FilterKernel kernel : {FilterKernel::Separable, FilterKernel::Square3x3, FilterKernel::Square5x5}) {
+        EXPECT_GT(compare(kernel, true, 2).front(), 0.01);
+        EXPECT_EQ(compare(kernel, false, 1).front(), 0.0);
+    }
+    EXPECT_LT(compare(FilterKernel::Separable, true, 32).back(), 1e-3);
 }
 
 void compareFilters(const Device& device, Extent extent, const std::vector<FilterKernel>& kernels) {
@@ -274,12 +345,6 @@ TEST_P(Denoiser, LowerResolutions) {
             expectNear(pipeline.read(Output::IndirectIrradiance), low);
         }
     }
-}
-
-double meanOf(const std::vector<glm::dvec3>& picture) {
-    double sum = 0.0;
-    for (const glm::dvec3& e : picture) sum += luminanceOf(e);
-    return sum / double(picture.size());
 }
 
 // The thieves of energy are rounding and a blur that is fed back: the mean must be that of frames as they come.

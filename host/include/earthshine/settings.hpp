@@ -61,8 +61,10 @@ inline constexpr const char* kUpsamplingNames[] = {"bilateral", "interpolate"};
 
 /// What tells the filter that a tap lies on another surface (kernels/atrous.cl).
 enum class FilterWeights {
-    Plane,  ///< its distance from the pixel's plane, against its distance along it: no matter the scene's scale
-    Depth,  ///< its depth, against metres a step: the field's usual way, for comparison
+    Plane,  ///< its distance from the pixel's plane, against its distance along it: no matter the scene's scale. And
+            ///< history counts for less the more it is turned; while it is short, lone pixels are limited (not if
+            ///< feedback would remember that)
+    Depth,  ///< its depth, against metres a step, and neither of these: the field's usual way, for comparison
 };
 inline constexpr const char* kFilterWeightsNames[] = {"plane", "depth"};
 
@@ -108,8 +110,9 @@ struct Settings {
                                     ///< difference at which a tap counts for nothing; 0 = any. Keeps contrast that no
                                     ///< surface shows, and takes light away where few samples are bright (5 % at 8)
     float filterFade = 1024.0f;     ///< [1; 1024] (frames) - history longer than this weakens the filter in proportion,
-                                    ///< and a step twice as wide from half of it on; an iteration that counts for less
-                                    ///< than a tenth is left out
+                                    ///< a step of 2 px from half of it on, of 4 from a 16th, of 8 from a 32nd ...; an
+                                    ///< iteration that counts for less than a tenth is left out; 1024 = never. What
+                                    ///< is left of noise goes by samples: 128 / spp is about right
     int feedback = 0;               ///< [0; 7] - accumulate: history remembers what this many filter iterations make
     float shadowBiasTexels = 0.5f;  ///< [0; 16] (shadow map texels) - depth bias, constant part
     float shadowSlopeBiasTexels = 1.5f;       ///< [0; 16] (shadow map texels) - depth bias a unit of slope

@@ -111,6 +111,22 @@ static vfloat confidenceAt(__global const float* confidence, SurfaceLayout layou
     vint left = toVint(floor(u)), top = toVint(floor(v));
     u -= floor(u);
     v -= floor(v);
+#if LANES > 1
+    // A row of pixels lies between the centres of three tiles: six numbers for all lanes.
+    int firstLeft = firstLane(left), firstTop = firstLane(top);
+    if (!anyLane((x - laneIndex() != firstLane(x)) | (y != firstLane(y)))) {
+        int upperRow = clamp(firstTop, 0, rows - 1) * columns, lowerRow = clamp(firstTop + 1, 0, rows - 1) * columns;
+        float at[3], down = firstLane(v);
+        for (int k = 0; k < 3; ++k) {
+            int column = clamp(firstLeft + k, 0, columns - 1);
+            at[k] = confidence[upperRow + column];
+            at[k] += down * (confidence[lowerRow + column] - at[k]);
+        }
+        vmask isNext = left > firstLeft;
+        vfloat from = vselect(isNext, at[1], at[0]);
+        return from + u * (vselect(isNext, at[2], at[1]) - from);
+    }
+#endif
     vint column0 = clampInt(left, 0, columns - 1), column1 = clampInt(left + 1, 0, columns - 1);
     vint row0 = clampInt(top, 0, rows - 1) * columns, row1 = clampInt(top + 1, 0, rows - 1) * columns;
     vfloat upper = gatherFloats(confidence, row0 + column0), lower = gatherFloats(confidence, row1 + column0);

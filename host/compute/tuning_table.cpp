@@ -23,7 +23,7 @@ namespace earthshine {
 const char kShippedTuning[] = R"(
 # scope    pattern                   kernel              lanes   storage  group
 device     llvmpipe                  *                   1       image    8x8
-type       CPU                       *                   native  planar   64x4
+type       CPU                       *                   native  planar   128x4
 type       CPU                       unpack              -       -        64x1
 type       CPU                       atrous_pair         -       -        1x1
 vendor     NVIDIA                    *                   1       packed   16x8

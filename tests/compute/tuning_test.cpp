@@ -142,7 +142,7 @@ TEST(TuningTable, ShippedRowsHoldEveryDevice) {
     cpu.nativeFloatWidth = 8;
     EXPECT_EQ(defaultTuning(cpu).lanes, 8);
     EXPECT_EQ(defaultTuning(cpu).storage, Storage::Planar);
-    EXPECT_THAT(localSizeOf(defaultTuning(cpu), "atrous"), ElementsAre(64, 4));
+    EXPECT_THAT(localSizeOf(defaultTuning(cpu), "atrous"), ElementsAre(128, 4));
     EXPECT_THAT(localSizeOf(defaultTuning(cpu), "unpack"), ElementsAre(64, 1));
     cpu.name = "llvmpipe (LLVM 15.0.6, 256 bits)";
     EXPECT_EQ(defaultTuning(cpu).lanes, 1);

@@ -14,19 +14,20 @@ namespace earthshine::bench {
 namespace {
 
 // A pixel: 1 / length and fade; its ray, how far that runs along the normal; the reach, what few frames make of it, 1 /
-// reach; slope and offset of its plane at no tap; luminance; the weights' sum, the mean. (No luminance to guide it, but
-// the difference is taken all the same.)
-constexpr double kPixel =
-    4 + kMad3 + kDot3 + (kFma + 1) + 3 + 2 + (2 + 1) + kLuminance + kFma + kScale3 + kMad3 + 1 + kScale3;
+// reach; slope and offset of its plane at no tap.
+constexpr double kPixel = 4 + kMad3 + kDot3 + (kFma + 1) + 3 + 2 + (2 + 1);
+// What a pass makes of it: the weights' sum, the mean.
+constexpr double kMean = kFma + kScale3 + kMad3 + 1 + kScale3;
 // A direction that it has taps in: slope and offset a step, and at the first tap.
 constexpr double kDirection = 2 * (kDot3 + 1) + 2 * 2;
-// A tap: its slope and offset; how its normal turned; distance from the plane; the difference in luminance; 1 - t of
-// all three; its square; its share; sums.
-constexpr double kTap =
-    2 + kSub3 + (kDot3 + 1) + kFma + (kLuminance + 1) + (1 + 1 + kFma) + (1 + kFma + 1) + 1 + 1 + 1 + kMad3;
-// In the first iteration, a lone pixel's limit: a tap's luminance and one more tap; their mean, the limit; how lone it
-// is, by how much too bright, what is left of it.
-constexpr double kLimitTap = 1 + 1, kLimit = 2 + (1 + kFma + 1) + 3 + 3 + (2 + kScale3);
+// A tap: its slope and offset; how its normal turned (a product, a mad, a bound); distance from the plane; 1 - t of
+// both; its square; its share; sums.
+constexpr double kTap = 2 + (kDot3 + kFma + 1) + kFma + (1 + kFma) + 1 + 1 + 1 + 1 + kMad3;
+// atrous.cl, whose luminance guides nothing here, takes the difference all the same, of each tap and a pixel.
+constexpr double kGuideTap = kLuminance + 1 + 2 + kFma, kGuide = kLuminance;
+// In the first iteration, a lone pixel's limit: a tap's luminance, one more tap, its share; their mean, the limit; how
+// lone it is; its luminance, by how much that is too bright, what is left of it.
+constexpr double kLimitTap = kLuminance + 3, kLimit = 2 + (1 + kFma + 1) + 5 + kLuminance + 3 + (2 + kScale3);
 
 // bytes: depth and out at every pixel; irradiance, normals and length where there is no sky.
 Row atrous(const Variant& variant, Extent extent, FilterKernel kernel, std::size_t pass, bool isPair = false) {
@@ -37,7 +38,9 @@ Row atrous(const Variant& variant, Extent extent, FilterKernel kernel, std::size
     const AtrousParams params = room.params(settings, true).filterPasses.at(pass);
     const int taps = isPair ? 8 : (2 * params.radiusX + 1) * (2 * params.radiusY + 1) - 1;
     const int directions = isPair ? 2 : (params.radiusX > 0) + (params.radiusY > 0);
-    const int pixels = isPair ? 2 : 1;  // a pair has all that a pixel needs twice
+    const int passes = isPair ? 2 : 1;
+    const double guide = isPair ? 0.0 : kGuide + taps * kGuideTap;
+    const double limit = params.limitsLone ? passes * kLimit + taps * kLimitTap : 0.0;
     const auto stage = std::make_shared<AtrousStage>(room.device);
     return {.device = room.device,
             .run = launches(room.device,
@@ -47,8 +50,7 @@ Row atrous(const Variant& variant, Extent extent, FilterKernel kernel, std::size
                                 isPair ? stage->enqueuePair(images, params) : stage->enqueue(images, params);
                             }),
             .work = {.bytes = room.bytes({room.inputs.depth, out}, {in, room.inputs.normalWs, length}),
-                     .flops = (pixels * kPixel + directions * kDirection + taps * kTap +
-                               (params.limitsLone ? pixels * kLimit + taps * kLimitTap : 0.0)) *
+                     .flops = (kPixel + passes * kMean + directions * kDirection + taps * kTap + guide + limit) *
                               room.seenPixels}};
 }
 

@@ -3,6 +3,7 @@
 
 #include "earthshine/settings.hpp"
 #include "flops.hpp"
+#include "rsm_choose_params.h"
 
 namespace earthshine::bench {
 
@@ -20,11 +21,11 @@ inline double gatherFlops(bool hasRecords, const Settings& settings) {
     return kPositionFromDepth + kMove + kCentre + settings.sampleCount * sample + kMad3;
 }
 
-/// rsm_choose.cl: of one set and one light. Eight points and their centres on the map, the pattern's move. A sample: u
-/// shifted, wrapped, mapped and turned; its place (two sums); eight densities (two differences, a square, max, the
+/// rsm_choose.cl: of one set and one light. Sixteen points and their centres on the map, the pattern's move. A sample:
+/// u shifted, wrapped, mapped and turned; its place (two sums); sixteen densities (two differences, a square, max, the
 /// mapping's, a sum); its weight.
 inline double chooseFlops(const Settings& settings) {
-    constexpr double kCentres = 8, kMove = 1 + 3 + 3;
+    constexpr double kCentres = COHERENT_SPAN_PX / COHERENT_STRIDE_PX, kMove = 1 + 3 + 3;
     constexpr double kCentre = kPositionFromDepth + kRowTimesPoint + 2 + 2 * (kRowTimesPoint + 1) + 4;
     const bool isArea = settings.mapping == RadiusMapping::Area, isPolar = settings.mapping == RadiusMapping::Polar;
     const double point = 3 + (isArea ? 1 : isPolar ? 2 : 4) + 1 + 2 * (3 + 1);

@@ -88,10 +88,10 @@ struct Coherent {
         const FrameSurfaces& i = room.inputs;
         gather.enqueue({i.normalWs, i.depth, i.rsm, i.lights, choices, out}, params);
     }
-    // bytes: depth at eight of sixteen pixels, the choices.
+    // bytes: depth, the choices.
     Work chooseWork() const {
         const double choiceBytes = sizeof(RsmChoice) * sets * settings.sampleCount;
-        return {.bytes = room.bytes({room.inputs.depth}) / 2 + choiceBytes, .flops = chooseFlops(settings) * sets};
+        return {.bytes = room.bytes({room.inputs.depth}) + choiceBytes, .flops = chooseFlops(settings) * sets};
     }
     // bytes: depth and out at every pixel, normals where there is no sky, the choices; of the map what they name.
     Work gatherWork() const {

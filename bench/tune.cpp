@@ -74,6 +74,7 @@ std::vector<Scenario> makeScenarios() {
     tile.settings.pattern = DiskPattern::Line;
     tile.settings.mapping = RadiusMapping::Squared;
     tile.settings.rsmMinify = 2;
+    tile.settings.filterKernel = FilterKernel::Square3x3;
     bilateral.settings.divisor = interpolate.settings.divisor = 2;
     bilateral.settings.upsampling = Upsampling::Bilateral;
     bilateral.settings.rotation = Rotation::Coherent;  // the other two gather at random

@@ -2,15 +2,16 @@
 //   out(p) = sum_q k_q w(p, q) in(q) / sum_q k_q w(p, q),   q = p + stepPx (i, j) of each tap
 //   Dammertz et al. 2010. 5 x 5 and 3 x 3 are B-splines; the separable pair runs a row and a column one after the other.
 //   w = fade max(0, 1 - t)^2,   t = (plane / reach)^2 + 2 (1 - n_p.n_q) / normalTolerance + luminance (below)
-//   2 (1 - n_p.n_q) = |n_p - n_q|^2 of unit normals. plane: distance of q's point from p's plane; reach: depthTolerance times the way to q on the surface, so that neither
-//   the scene's scale nor the step matters. All of it is polynomial: no transcendental a tap.
+//   2 (1 - n_p.n_q) = |n_p - n_q|^2 of unit normals; plane: distance of q's point from p's plane; reach: depthTolerance
+//   times the way to q on the surface, so that neither the scene's scale nor the step matters. All of it is polynomial: no
+//   transcendental a tap.
 //   fade = min(1, fadeFrames / length): where history is long there is little noise left, and blur would be all error.
 //   Below SMALLEST_FADE it is none, and where all lanes have none, neighbours are not read.
 //   reach is max(1, YOUNG_FRAMES / length) times as far: among few frames' outliers a mean over what is only near is the
 //   lesser error (a first frame of leaves and balusters: relMSE 0.71 without, 0.4 with it).
 //   A pixel that few of its taps share a surface with would stay as noisy as its samples: if limitsLone, it counts as no
 //   brighter than 2.5 + (length / 4)^2 times the mean luminance of all taps, whatever their surface, as far as its own
-//   make up less than LONE_SHARE of them; unless all else is dark. Of a still picture that takes next to no light; of thin
+//   make up less than LONE_SHARE of those in the picture; unless all else is dark. Of a still picture that takes next to no light; of thin
 //   bright things in motion it takes some.
 //   luminance: (l_p - l_q)^2 / (luminanceTolerance^2 variance of p's mean), coming in from 3 to 4 frames
 //   (Schied et al. 2017); a hundredth of l_p is never an edge, nor could 32 bits tell its variance.
@@ -91,7 +92,7 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
 
     int spanPx = params.radiusX * params.stepPx;
     bool isInner = px.x >= spanPx && px.x + LANES + spanPx <= width;
-    vfloat sumWeights = 0.0f, luminances = 0.0f, taps = 0.0f;
+    vfloat sumWeights = 0.0f, luminances = 0.0f, taps = 0.0f, shares = 0.0f;
     vfloat3 sum = make3(0.0f, 0.0f, 0.0f);
     for (int j = -params.radiusY; j <= params.radiusY; ++j, slope += slopeY, offset += offsetY) {
         int y = px.y + j * params.stepPx;
@@ -103,12 +104,14 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
             float inverseWay2 = 1.0f / (float)(i * i + j * j);
             vfloat tapDepth = loadFrom1(inDepth, x, y);
             vfloat3 tap = loadFrom3(inIrradiance, x, y), tapNormal = loadFrom3(inNormalWs, x, y);
-            vmask isThere = tapDepth > 0.0f;
-            if (!isInner) isThere &= (x + laneIndex() >= 0) & (x + laneIndex() < width);
+            vmask isInside = (x + laneIndex() >= 0) & (x + laneIndex() < width), isThere = tapDepth > 0.0f;
+            if (!isInner) isThere &= isInside;
+            float share = shareJ * shareOf(&params, i, params.radiusX);
             vfloat weight, tapL = luminance(tap);
             if (params.limitsLone) {
                 luminances += vselect(isThere, tapL, 0.0f);
                 taps += vselect(isThere, 1.0f, 0.0f);
+                shares += vselect(isInside, share, 0.0f);
             }
             if (params.weights == ATROUS_WEIGHTS_PLANE) {
                 vfloat near = nearness(&params, &p, slopeI, offsetI, inverseWay2, tapDepth, tapNormal);
@@ -117,15 +120,15 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
                 weight = near * near;
             } else {
                 float inverseWay = sqrt(inverseWay2) / params.depthTolerance;
-                weight = es_exp(-fabs(tapDepth - depth) * cosine * inverseWay + likeness(&params, &p, tapNormal) - 1.0f);
+                weight = es_exp(-fabs(tapDepth - depth) * cosine * inverseWay + normalLikeness(&params, &p, tapNormal) - 1.0f);
             }
-            weight = vselect(isThere, shareJ * shareOf(&params, i, params.radiusX) * weight, 0.0f);
+            weight = vselect(isThere, share * weight, 0.0f);
             sumWeights += weight;
             sum = mad3(weight, tap, sum);
         }
     }
     float centre = shareOf(&params, 0, params.radiusX) * shareOf(&params, 0, params.radiusY);
-    if (params.limitsLone) irradiance = limitedAlone(irradiance, length, sumWeights, 1.0f - centre, luminances, taps);
+    if (params.limitsLone) irradiance = limitedAlone(irradiance, length, p.fade, sumWeights, shares, luminances, taps);
     sumWeights = vmad(p.fade, sumWeights, centre);
     sum = mad3(p.fade, sum, scale3(centre, irradiance));
     store3(outIrradiance, px, select3(isSurface, scale3(1.0f / sumWeights, sum), make3(0.0f, 0.0f, 0.0f)));

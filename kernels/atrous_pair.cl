@@ -82,24 +82,25 @@ static RowPixel filterRow(INPUTS_IN, const AtrousParams* params, Pixel px, ReadP
         sum = mad3(weight, irradiances[tap], sum);
     }
     if (params->limitsLone) {
-        vfloat luminances = 0.0f, taps = 0.0f;
+        vfloat luminances = 0.0f, taps = 0.0f, shares = 0.0f;
 #pragma unroll
         for (int tap = 0; tap < 4; ++tap) {
             vint x = px.x + wayOf(tap) * step + laneIndex();
-            vmask isThere = (depths[tap] > 0.0f) & (x >= 0) & (x < width);
+            vmask isInside = (x >= 0) & (x < width), isThere = isInside & (depths[tap] > 0.0f);
             luminances += vselect(isThere, luminance(irradiances[tap]), 0.0f);
             taps += vselect(isThere, 1.0f, 0.0f);
+            shares += vselect(isInside, shareOf(params, wayOf(tap)), 0.0f);
         }
         r.irradiance =
-            limitedAlone(r.irradiance, read.length, sumWeights, 1.0f - params->share0, luminances, taps);
+            limitedAlone(r.irradiance, read.length, r.point.fade, sumWeights, shares, luminances, taps);
     }
     r.irradiance = meanOf(params, r.point.fade, r.irradiance, sum, sumWeights);
     return r;
 }
 
-// Of the third of five rows, a step apart; length: read only if limitsLone.
+// Of the third of five rows, a step apart. y of `height` is its row; length: read only if limitsLone.
 static vfloat3 filterColumn(const RowPixel* above2, const RowPixel* above, const RowPixel* row, const RowPixel* below,
-                            const RowPixel* below2, const AtrousParams* params, vfloat length) {
+                            const RowPixel* below2, const AtrousParams* params, int y, int height, vfloat length) {
     const FilterPoint* p = &row->point;
     vmask isSurface = p->depth > 0.0f;
     vfloat3 mean = row->irradiance;
@@ -121,13 +122,16 @@ static vfloat3 filterColumn(const RowPixel* above2, const RowPixel* above, const
         }
         if (params->limitsLone) {
             vfloat luminances = 0.0f, count = 0.0f;
+            float shares = 0.0f;
 #pragma unroll
             for (int tap = 0; tap < 4; ++tap) {
                 vmask isThere = taps[tap]->point.depth > 0.0f;
                 luminances += vselect(isThere, luminance(taps[tap]->irradiance), 0.0f);
                 count += vselect(isThere, 1.0f, 0.0f);
+                int at = y + wayOf(tap) * params->stepPx;
+                if (at >= 0 && at < height) shares += shareOf(params, wayOf(tap));
             }
-            mean = limitedAlone(mean, length, sumWeights, 1.0f - params->share0, luminances, count);
+            mean = limitedAlone(mean, length, p->fade, sumWeights, shares, luminances, count);
         }
         mean = meanOf(params, p->fade, mean, sum, sumWeights);
     }
@@ -145,7 +149,6 @@ __kernel void atrous_pair(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURF
     // Five rows in registers, and the next one on its way while this one is filtered. What its taps will want is on its
     // way with it: they are other items' pixels.
     RowPixel row0, row1, row2, row3, row4;
-    row1.point.depth = row2.point.depth = row3.point.depth = row4.point.depth = 0.0f;
     Pixel px = {left, top - 2 * step};
     ReadPixel next = readPixel(INPUTS_ARG, SURFACE_ARG(inLength), px);
     for (int row = -2; row < ATROUS_PAIR_ROWS(LANES) + 2; ++row, px.y += step) {
@@ -161,7 +164,7 @@ __kernel void atrous_pair(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURF
         if (row < 2) continue;
         vfloat length = 0.0f;
         if (params.limitsLone) length = load1(inLength, out);
-        store3(outIrradiance, out, filterColumn(&row0, &row1, &row2, &row3, &row4, &params, length));
+        store3(outIrradiance, out, filterColumn(&row0, &row1, &row2, &row3, &row4, &params, out.y, height, length));
     }
 #else
     RowPixel rows[5][ATROUS_PAIR_STRIP(LANES)];  // row r is in r % 5
@@ -178,7 +181,7 @@ __kernel void atrous_pair(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURF
             if (params.limitsLone) length = load1(inLength, px);
             store3(outIrradiance, px,
                    filterColumn(&rows[(row + 1) % 5][k], &rows[(row + 2) % 5][k], &rows[(row + 3) % 5][k],
-                                &rows[(row + 4) % 5][k], &rows[row % 5][k], &params, length));
+                                &rows[(row + 4) % 5][k], &rows[row % 5][k], &params, px.y, height, length));
         }
     }
 #endif

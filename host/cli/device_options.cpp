@@ -29,8 +29,7 @@ void addDeviceOptions(Options& options, DeviceArguments& arguments) {
                        static constexpr const char* kNames[] = {"off", "on"};
                        o.rsmRecords = parseChoice(text, kNames);
                    });
-    options.option("--filter-pairs", "on|off", "",
-                   "a row and a column of the separable filter in one launch [the tuning table's]",
+    options.option("--filter-pairs", "on|off", "", "a row and a column of the separable filter in one launch [on]",
                    [&o](const std::string& text) {
                        static constexpr const char* kNames[] = {"off", "on"};
                        o.filterPairs = parseChoice(text, kNames);

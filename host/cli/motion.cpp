@@ -251,10 +251,8 @@ MotionResult measureScene(const QualityScene& scene, const QualityList& list, co
 
 std::string tableOf(const MotionResult& result, const MotionArguments& arguments) {
     std::string text = fmt::format(
-        "\n## {}, orbit of {} degrees a frame\n\nThe full sum's own flicker: {:.4f}, over {:.1f} % of the pixels.\n\n| "
-        "setting | ms | relMSE | "
-        "HDR-FLIP | "
-        "flicker |{}\n|---|---:|---:|---:|---:|{}\n",
+        "\n## {}, orbit of {} degrees a frame\n\nThe full sum's own flicker: {:.4f}, over {:.1f} % of the pixels.\n\n"
+        "| setting | ms | relMSE | HDR-FLIP | flicker |{}\n|---|---:|---:|---:|---:|{}\n",
         result.scene->name, arguments.orbitDegPerFrame, result.truthFlicker, 100.0 * result.countedShare,
         arguments.jumpFrame > 0 ? " relMSE 8 frames after the sun jumped | with no past |" : "",
         arguments.jumpFrame > 0 ? "---:|---:|" : "");

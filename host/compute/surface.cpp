@@ -25,7 +25,8 @@ Surface::Surface(const Device& device, PixelFormat format, Extent extent) : form
     const int channels = format == PixelFormat::R32F ? 1 : 3;
     const int pitch = (extent.widthPx + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
     const auto planeFloats = std::size_t(pitch) * std::size_t(extent.heightPx);
-    if (planeFloats * 4 > std::size_t(INT32_MAX))  // unpack counts four channels a pixel
+    // unpack counts four channels a pixel, and packed pixels are 8 bytes, of 32-bit offsets, guards included.
+    if ((planeFloats + 2 * SURFACE_GUARD) * 4 > std::size_t(INT32_MAX))
         throw DeviceError(fmt::format("surface: {} x {} is more than a kernel's 32-bit offsets reach", extent.widthPx,
                                       extent.heightPx));
     layout_ = {extent.widthPx, extent.heightPx, pitch, int(planeFloats)};

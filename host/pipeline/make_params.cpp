@@ -51,8 +51,9 @@ float fadeFrames(const Settings& settings, int iteration) {
     constexpr float kNever = 1024.0f;  // the setting's largest
     if (settings.filterFade >= kNever) return kNever;
     // A step is twice as wide as the one before: it must fade twice as fast, or it blurs what frames made clean. From
-    // four pixels on it crosses more edges of light than it finds noise as soon as there are some frames: eight times
-    // as fast, and a first frame has half of it. (Eighth frame of an orbit of a game level: relMSE 0.018, else 0.026.)
+    // four pixels on it crosses more edges of light than it finds noise as soon as there are some frames: four times as
+    // fast again, but a first frame has at least half of it. (Eighth frame of an orbit of a game level: relMSE 0.018,
+    // else 0.026.)
     const float frames = std::ldexp(settings.filterFade, iteration < 2 ? -iteration : -iteration - 2);
     return std::max(frames, 0.5f);
 }
@@ -143,9 +144,10 @@ FrameParams makeParams(const Settings& settings, const FrameGeometry& full) {
     p.denoises = settings.accumulates || settings.filterIterations > 0;
     p.temporal = temporalParams(settings, frame);
     p.checksHistory = settings.accumulates && settings.antiLag > 0.0f;
-    // The check takes pixels for independent; a tile's mean is one for all of its pixels, and a set's noise is alike.
-    constexpr float kAlikePixels = 16.0f;
-    p.historyCheck.droppedAbove = settings.antiLag * (p.averagesTile || p.sharesTexels ? kAlikePixels : 1.0f);
+    // The check takes pixels for independent. A tile's mean is one for all of its 16 pixels; of a set, whose noise is
+    // alike, the three tiles beside one another that it looks at hold 12.
+    const float alikePixels = p.averagesTile ? 16.0f : p.sharesTexels ? 12.0f : 1.0f;
+    p.historyCheck.droppedAbove = settings.antiLag * alikePixels;
     p.historyCheck.keptBelow = 0.5f * p.historyCheck.droppedAbove;
     p.keepsMoment = keepsMoment(settings);
     p.filterPasses = filterPasses(settings, frame);

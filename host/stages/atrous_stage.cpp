@@ -29,7 +29,8 @@ void AtrousStage::enqueue(const Images& images, const AtrousParams& params) {
 }
 
 void AtrousStage::enqueuePair(const Images& images, const AtrousParams& params) {
-    if (!canPair(params)) throw DeviceError("atrous: a pair has weights of planes alone");
+    if (!canPair(params))
+        throw DeviceError("atrous: a pair has weights of planes and no luminance; use a launch a pass");
     set(pair_, images, params);
     const Extent extent = images.outIrradiance.extent();
     const int widthPx = ATROUS_PAIR_STRIP(lanes_) * lanes_, heightPx = ATROUS_PAIR_ROWS(lanes_) * params.stepPx;

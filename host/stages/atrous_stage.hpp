@@ -25,7 +25,8 @@ public:
     static bool canPair(const AtrousParams& params) {
         return params.weights == ATROUS_WEIGHTS_PLANE && params.luminanceTolerance == 0.0f;
     }
-    /// A row of five taps and a column of five, whatever radius `params` has, in one launch.
+    /// A row of five taps and a column of five, whatever radius `params` has, in one launch. Throws DeviceError, also
+    /// for what cannot be a pair.
     void enqueuePair(const Images& images, const AtrousParams& params);
 
 private:

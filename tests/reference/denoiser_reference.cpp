@@ -202,22 +202,23 @@ std::vector<glm::dvec3> filterPass(const FrameImages& f, const std::vector<glm::
             const double z = double(*f.depth.pixel(x, y));
             const auto at = std::size_t(y * e.widthPx + x);
             const double length = memory ? memory->length[at] : 1.0, l = luminanceOf(in[at]);
-            // Of a step twice as wide; from four pixels on of eight times as much.
+            // Half at a step of two; from four pixels on a fourth of what halving would leave.
             const double fullFrames = std::max(double(settings.filterFade) / (step < 4 ? step : 4 * step), 0.5);
             double fade = settings.filterFade < 1024.0f ? std::min(fullFrames / length, 1.0) : 1.0;
             if (fade < 0.1) fade = 0.0;
             const double variance = memory ? std::max(memory->moment[at] - l * l, 0.0) / length : 0.0;
             const double deviations = double(settings.filterLuminance) / step;  // an iteration has twice the step
             const double guidance = deviations > 0.0 ? std::clamp(length - 3.0, 0.0, 1.0) : 0.0;
-            double weights = 0.0, ownShare = 0.0, luminances = 0.0, taps = 0.0;
+            double weights = 0.0, ownWeights = 0.0, shares = 0.0, luminances = 0.0, taps = 0.0;
             glm::dvec3 sum(0.0);
-            const double centre = (radiusX > 0 ? kernel(0) : 1.0) * (radiusY > 0 ? kernel(0) : 1.0);
             for (int j = -radiusY; j <= radiusY; ++j) {
                 for (int i = -radiusX; i <= radiusX; ++i) {
                     if (i == 0 && j == 0) continue;
                     const int tx = x + i * step, ty = y + j * step;
                     if (tx < 0 || ty < 0 || tx >= e.widthPx || ty >= e.heightPx) continue;
                     const auto tap = std::size_t(ty * e.widthPx + tx);
+                    const double share = (radiusX > 0 ? kernel(i) : 1.0) * (radiusY > 0 ? kernel(j) : 1.0);
+                    shares += share;
                     if (!points[tap].isValid) continue;
                     double w = 0.0;
                     const double steps = std::hypot(i, j), turned = 2.0 *
@@ -236,8 +237,8 @@ std::vector<glm::dvec3> filterPass(const FrameImages& f, const std::vector<glm::
                         const double dz = std::fabs(double(*f.depth.pixel(tx, ty)) - z);
                         w = std::exp(-dz * cosine / (double(settings.filterDepth) * steps) - turned);
                     }
-                    w *= (radiusX > 0 ? kernel(i) : 1.0) * (radiusY > 0 ? kernel(j) : 1.0);
-                    ownShare += w / (1.0 - centre);
+                    w *= share;
+                    ownWeights += w;
                     luminances += luminanceOf(in[tap]);
                     taps += 1.0;
                     weights += fade * w;
@@ -246,12 +247,13 @@ std::vector<glm::dvec3> filterPass(const FrameImages& f, const std::vector<glm::
             }
             // Among few of its own, a young pixel is about as bright as what is around it.
             glm::dvec3 own = in[at];
-            const bool isLimited = settings.accumulates && settings.feedback == 0 && step == 1 &&
+            const bool isLimited = fade > 0.0 && settings.accumulates && settings.feedback == 0 && step == 1 &&
                                    settings.filterWeights == FilterWeights::Plane;
             if (isLimited && luminances > 0.0 && l > 0.0) {
                 const double limit = (2.5 + length * length / 16.0) * luminances / taps;
-                own *= 1.0 - std::max(1.0 - ownShare / 0.64, 0.0) * std::max(1.0 - limit / l, 0.0);
+                own *= 1.0 - std::max(1.0 - ownWeights / (0.64 * shares), 0.0) * std::max(1.0 - limit / l, 0.0);
             }
+            const double centre = (radiusX > 0 ? kernel(0) : 1.0) * (radiusY > 0 ? kernel(0) : 1.0);
             out[at] = (sum + centre * own) / (weights + centre);
         }
     }

@@ -33,7 +33,7 @@ std::vector<DeviceCaps> testedDevices() {
 }  // namespace
 
 double surfaceRounding(const Variant& variant) {
-    return variant.options.storage == "packed" ? 0x1p-13 : 0.0;
+    return tuningFor(variant.caps, variant.options).storage == Storage::Packed ? 0x1p-13 : 0.0;
 }
 
 std::vector<Variant> allVariants() {

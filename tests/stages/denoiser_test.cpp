@@ -297,6 +297,65 @@ TEST_P(Denoiser, FiltersInEveryForm) {
     compareFilters(device_, {191, 347}, {FilterKernel::Separable});
 }
 
+// A row and a column in one launch are the two passes, at every step, size and feedback. (Packed pixels round between
+// the two.)
+TEST_P(Denoiser, PairsAreTwoPasses) {
+    DeviceOptions options = GetParam().options;
+    options.filterPairs = 0;
+    const Device twoPasses(GetParam().caps, options);
+    options.filterPairs = 1;
+    const Device pairs(GetParam().caps, options);
+    for (const Extent extent : {Extent{1, 1}, Extent{7, 3}, Extent{97, 141}}) {
+        const FrameImages frame = slidingWalls(extent);
+        for (const int feedback : {0, 2}) {
+            SCOPED_TRACE(testing::Message() << extent.widthPx << " x " << extent.heightPx << ", feedback " << feedback);
+            Settings settings = settingsOf(Preset::Balanced);
+            settings.filterIterations = 7;
+            settings.feedback = feedback;
+            Pipeline two(twoPasses), paired(pairs);
+            for (Pipeline* pipeline : {&two, &paired}) {
+                pipeline->setFrame(frame.inputs());
+                for (int i = 0; i < 3; ++i) pipeline->run(settings);
+            }
+            expectNear(paired.read(Output::IndirectIrradiance), colors(two.read(Output::IndirectIrradiance)));
+        }
+    }
+}
+
+// Normals that are not unit: a filter still makes means, of which none is more than the most.
+TEST_P(Denoiser, LongNormalsMakeNoLight) {
+    FrameImages frame = slidingWalls({53, 37});
+    HostImage normals = toFloat(frame.normalWs.view());
+    constexpr float kLengths[] = {0.7f, 40.0f, 1000.0f, 60000.0f};
+    for (int i = 0; i < 53 * 37; ++i)
+        if (i % 5 == 0)
+            for (int c = 0; c < 3; ++c) normals.pixel(0, 0)[4 * i + c] *= kLengths[i / 5 % 4];
+    frame.normalWs = toHalf(normals.view());
+    for (const int filterPairs : {0, 1}) {
+        DeviceOptions options = GetParam().options;
+        options.filterPairs = filterPairs;
+        Pipeline pipeline{Device(GetParam().caps, options)};
+        pipeline.setFrame(frame.inputs());
+        Settings settings = fewSamples();
+        settings.animatesNoise = false;
+        pipeline.run(settings);
+        double most = 0.0;
+        for (const glm::dvec3& e : colors(pipeline.read(Output::IndirectIrradiance)))
+            most = std::max({most, e.x, e.y, e.z});
+        settings.filterIterations = 3;
+        settings.filterNormal = 0.05f;
+        for (const FilterWeights weights : {FilterWeights::Plane, FilterWeights::Depth}) {
+            settings.filterWeights = weights;
+            pipeline.run(settings);
+            for (const glm::dvec3& e : colors(pipeline.read(Output::IndirectIrradiance)))
+                for (int c = 0; c < 3; ++c) {
+                    ASSERT_TRUE(std::isfinite(e[c]));
+                    ASSERT_LE(e[c], most * 1.001) << kFilterWeightsNames[int(weights)] << ", pairs " << filterPairs;
+                }
+        }
+    }
+}
+
 // Picked at half and a fourth: what is interpolated lies between what the picks have, what is gathered in full is as if
 // nothing had been left out; and history works at lower resolution as at the picture's own.
 TEST_P(Denoiser, LowerResolutions) {

@@ -9,7 +9,7 @@
 namespace earthshine {
 
 /// How a kernel's surfaces are kept: OpenCL images; one buffer of float planes with padded rows; or one buffer of
-/// pixels, whose three numbers share 64 bits (12 of mantissa each: kernels/common/packed_three.clh).
+/// pixels, whose three numbers share 64 bits (12 or 13 of mantissa each: kernels/common/packed_three.clh).
 enum class Storage { Image, Planar, Packed };
 
 /// How kernels are built and launched on a device. Defaults come from the tuning table (bench/README.md).
@@ -65,7 +65,7 @@ struct DeviceOptions {
     int lanes = 0;                ///< 0 = the tuning table's
     std::string storage;          ///< "image", "planar", "packed", "" = the tuning table's
     int rsmRecords = -1;          ///< 0, 1, -1 = the tuning table's
-    int filterPairs = -1;         ///< 0, 1, -1 = the tuning table's
+    int filterPairs = -1;         ///< 0, 1, -1 = 1
     int localSizePx[2] = {0, 0};  ///< of every kernel; 0 = the tuning table's
     std::string tuningFile;       ///< rows that go before the library's own; "" = $EARTHSHINE_TUNING or none
     bool profiling = false;       ///< stage times by profiling events; slows some drivers down (Intel's by up to 1.8x)

@@ -104,7 +104,7 @@ struct Settings {
     float filterDepth = 0.25f;  ///< [0.001; 1000] - plane: m off the plane a m aside, measured across the view, where
                                 ///< history is 8 frames or longer; 8 / length times as much where it is shorter, and
                                 ///< so 8 times without accumulate; depth: m a step
-    float filterNormal = 0.3f;  ///< [0.001; 1000] - squared difference of unit normals at which a tap counts for
+    float filterNormal = 0.3f;  ///< [0.05; 1000] - squared difference of unit normals at which a tap counts for
                                 ///< nothing (plane) or 1/e (depth)
     float filterLuminance = 0.0f;   ///< [0; 1000] (standard deviations, about) - plane weights only: luminance
                                     ///< difference at which a tap counts for nothing; 0 = any. Keeps contrast that no
@@ -180,7 +180,7 @@ void forEachSetting(SettingsT& s, Visitor&& visit) {
     visit(SettingInfo{"filter-depth", "", 0.001, 1000,
                       "filter: tolerance; plane: m off the surface a m along it, depth: m a step"},
           s.filterDepth);
-    visit(SettingInfo{"filter-normal", "", 0.001, 1000, "filter: tolerated squared difference of unit normals"},
+    visit(SettingInfo{"filter-normal", "", 0.05, 1000, "filter: tolerated squared difference of unit normals"},
           s.filterNormal);
     visit(SettingInfo{"filter-luminance", "standard deviations", 0, 1000,
                       "filter, plane: tolerated difference of luminance; 0 = any"},

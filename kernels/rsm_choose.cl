@@ -23,7 +23,8 @@ typedef struct SetPoints {
     vmask isSurface;  // any of them
 } SetPoints;
 
-// The pixels of the set; in place of sky or of what lies outside, the next that does not.
+// The pixels of the set; in place of sky or of what lies outside, the one before that does
+// not, or at the start the one after.
 static SetPoints pointsOf(SURFACE_IN(inDepth), const ViewRays* rays, vint firstX, int y) {
     SetPoints points;
     vint x[SET_PX];

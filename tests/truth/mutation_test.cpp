@@ -171,8 +171,7 @@ constexpr Mutation kTexels[] = {
 constexpr Mutation kOtherStages[] = {
     {"normals half as long", "common/rsm_record.clh", "* 32767.0f", "* 16383.0f"},
     {"radius twice", "common/rsm_record.clh", "* 0x1p-112f", "* 0x1p-111f"},
-    {"flux in another channel's place", "common/rsm_record.clh", "record.fluxR = r.lane[i]",
-     "record.fluxR = a.lane[i]"},
+    {"flux in another channel's place", "common/rsm_record.clh", "z.lane[i], r.lane[i])", "z.lane[i], a.lane[i])"},
     {"minified flux of one texel", "rsm_minify.cl", "flux = add3(flux, f);", "flux = f;"},
     {"minified flux of one row", "rsm_minify.cl", "int rows = min(params.minify, ", "int rows = min(1, "},
     {"minified position of the wrong column", "rsm_minify.cl", "vselectInt(isPicked, x, pickedX)",

@@ -28,7 +28,7 @@ inline void PrintTo(const Variant& variant, std::ostream* out) {
 std::vector<Variant> allVariants();
 
 /// Those of allVariants() that are quick to build: llvmpipe takes up to ten seconds a process for kernels of several
-/// lanes, so that of these there is only one.
+/// lanes, so that of these there is only one, unless $EARTHSHINE_TEST_EVERY_VARIANT is set.
 std::vector<Variant> quickVariants();
 
 /// One variant a device: its own defaults.

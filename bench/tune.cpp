@@ -26,6 +26,7 @@
 #include "earthshine/pipeline.hpp"
 #include "revision.hpp"
 #include "room_frame.hpp"
+#include "tune_arguments.hpp"
 
 namespace earthshine::bench {
 
@@ -50,13 +51,6 @@ constexpr Group kGroups[] = {{8, 4},  {8, 8},  {16, 2}, {16, 4}, {16, 8},  {16, 
 std::string nameOf(Group group) {
     return group == Group{} ? "the table's groups" : fmt::format("{}x{}", group.x, group.y);
 }
-
-struct Arguments {
-    std::string device, out;
-    Extent extent{1920, 1080};
-    int rounds = 3;
-    bool groupsOnly = false;  ///< for the lanes and storage that the table has
-};
 
 /// One frame that is measured.
 struct Scenario {
@@ -168,7 +162,7 @@ double medianOf(std::vector<double> values) {
 
 class Tuner {
 public:
-    Tuner(const DeviceCaps& caps, const Arguments& arguments)
+    Tuner(const DeviceCaps& caps, const TuneArguments& arguments)
         : caps_(caps),
           arguments_(arguments),
           table_(defaultTuning(caps)),
@@ -434,7 +428,7 @@ private:
     }
 
     DeviceCaps caps_;
-    Arguments arguments_;
+    TuneArguments arguments_;
     Tuning table_;
     std::vector<Scenario> scenarios_;
     Frames frames_;
@@ -443,43 +437,6 @@ private:
     std::map<std::string, std::vector<double>> spreads_;
 };
 
-Arguments parse(int argc, char** argv) {
-    Arguments arguments;
-    const auto after = [](std::string_view text, std::string_view name) {
-        return text.starts_with(name) ? std::optional(std::string(text.substr(name.size()))) : std::nullopt;
-    };
-    for (int i = 1; i < argc; ++i) {
-        const std::string text = argv[i];
-        char rest = 0;
-        if (text == "--tune") continue;
-        if (text == "--groups-only") {
-            arguments.groupsOnly = true;
-            continue;
-        }
-        if (const auto device = after(text, "--device=")) {
-            arguments.device = *device;
-        } else if (const auto out = after(text, "--out=")) {
-            arguments.out = *out;
-        } else if (text == "--out" && i + 1 < argc) {
-            arguments.out = argv[++i];
-        } else if (const auto size = after(text, "--size=")) {
-            if (std::sscanf(size->c_str(), "%dx%d%c", &arguments.extent.widthPx, &arguments.extent.heightPx, &rest) !=
-                    2 ||
-                std::min(arguments.extent.widthPx, arguments.extent.heightPx) < 16 ||
-                std::max(arguments.extent.widthPx, arguments.extent.heightPx) > 8192)
-                throw UsageError(fmt::format("tune: --size={}: is not WxH of 16 to 8192 pixels", *size));
-        } else if (const auto rounds = after(text, "--rounds=")) {
-            if (std::sscanf(rounds->c_str(), "%d%c", &arguments.rounds, &rest) != 1 || arguments.rounds < 1 ||
-                arguments.rounds > 99)
-                throw UsageError(fmt::format("tune: --rounds={}: is not a number from 1 to 99", *rounds));
-        } else {
-            throw UsageError(fmt::format(
-                "tune: '{}' is none of --device=NAME, --size=WxH, --rounds=N, --groups-only, --out FILE", text));
-        }
-    }
-    return arguments;
-}
-
 }  // namespace
 
 bool asksToTune(int argc, char** argv) {
@@ -487,7 +444,7 @@ bool asksToTune(int argc, char** argv) {
 }
 
 void tune(int argc, char** argv) {
-    const Arguments arguments = parse(argc, argv);
+    const TuneArguments arguments = parseTuneArguments(argc, argv);
     const DeviceCaps caps = selectDevice(arguments.device);
     std::string text = fmt::format("# {}, {} {}: earthshine_bench {} --tune, {} x {}\n{}\n", caps.name,
                                    caps.platformName, caps.driverVersion, kRevision, arguments.extent.widthPx,

@@ -1,22 +1,8 @@
 // atrous: one pass of the edge-avoiding a-trous filter: a mean over taps that lie on the same surface.
 //   out(p) = sum_q k_q w(p, q) in(q) / sum_q k_q w(p, q),   q = p + stepPx (i, j) of each tap
 //   Dammertz et al. 2010. 5 x 5 and 3 x 3 are B-splines; the separable pair runs a row and a column one after the other.
-//   w = fade max(0, 1 - t)^2,   t = (plane / reach)^2 + 2 (1 - n_p.n_q) / normalTolerance + luminance (below)
-//   2 (1 - n_p.n_q) = |n_p - n_q|^2 of unit normals; plane: distance of q's point from p's plane; reach: depthTolerance
-//   times the way to q on the surface, so that neither the scene's scale nor the step matters. All of it is polynomial: no
-//   transcendental a tap.
-//   fade = min(1, fadeFrames / length): where history is long there is little noise left, and blur would be all error.
-//   Below SMALLEST_FADE it is none, and where all lanes have none, neighbours are not read.
-//   reach is max(1, YOUNG_FRAMES / length) times as far: among few frames' outliers a mean over what is only near is the
-//   lesser error (a first frame of leaves and balusters: relMSE 0.71 without, 0.4 with it).
-//   A pixel that few of its taps share a surface with would stay as noisy as its samples: if limitsLone, it counts as no
-//   brighter than 2.5 + (length / 4)^2 times the mean luminance of all taps, whatever their surface, as far as its own
-//   make up less than LONE_SHARE of those in the picture; unless all else is dark. Of a still picture that takes next to no light; of thin
-//   bright things in motion it takes some.
-//   luminance: (l_p - l_q)^2 / (luminanceTolerance^2 variance of p's mean), coming in from 3 to 4 frames
-//   (Schied et al. 2017); a hundredth of l_p is never an edge, nor could 32 bits tell its variance.
-//   ATROUS_WEIGHTS_DEPTH is the field's usual weight, for comparison: e^(-|z_p - z_q| max(1/4, n_p.v) / (depthTolerance
-//   |(i, j)|)) e^(-2 (1 - n_p.n_q) / normalTolerance), v towards the eye.
+//   w: common/atrous.clh, by planes; or ATROUS_WEIGHTS_DEPTH, the field's usual weight, for comparison:
+//   fade e^(-|z_p - z_q| max(1/4, n_p.v) / (depthTolerance |(i, j)|)) e^(-2 (1 - n_p.n_q) / normalTolerance), v towards the eye
 //   in   inIrradiance   lx
 //   in   inNormalWs, inDepth   unit; m, 0 on sky
 //   in   inLength       frames of history

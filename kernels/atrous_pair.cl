@@ -8,7 +8,7 @@
 //   in   inLength       frames of history
 //   out  outIrradiance  lx, >= 0, finite; 0 on sky
 //   Work 2D: strips of ATROUS_PAIR_STRIP x LANES pixels; ATROUS_PAIR_ROWS rows, a step apart, of each remainder of the
-//   step: remainders of the first rows first. Any local size; items past the edge return.
+//   step: remainders of the first rows first. Any local size, 1 x 1 of several lanes; items past the edge return.
 
 #include "atrous.clh"
 
@@ -138,6 +138,10 @@ static vfloat3 filterColumn(const RowPixel* above2, const RowPixel* above, const
     return select3(isSurface, mean, make3(0.0f, 0.0f, 0.0f));
 }
 
+// Strips take stack, which CPU drivers keep for every item of a group: one item a group.
+#if LANES > 1
+__attribute__((reqd_work_group_size(1, 1, 1)))
+#endif
 __kernel void atrous_pair(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), SURFACE_IN(inLength),
                           SURFACE_OUT(outIrradiance), const AtrousParams params) {
     int width = outIrradianceLayout.widthPx, height = outIrradianceLayout.heightPx, step = params.stepPx;

@@ -1,5 +1,5 @@
 // The denoiser against plain doubles at every width and storage, on every device here: temporal accumulation along
-// motion, the a-trous filter in each of its forms, and history that is dropped when the light changes.
+// motion, and history that is dropped when the light changes.
 // What the stages start from is the picture of a pipeline that does not denoise.
 
 #include <gtest/gtest.h>
@@ -14,6 +14,7 @@
 #include "earthshine/pipeline.hpp"
 #include "reference/denoiser_reference.hpp"
 #include "reference/device_variants.hpp"
+#include "stages/denoiser_fixture.hpp"
 
 namespace earthshine {
 namespace {
@@ -24,50 +25,6 @@ using reference::luminanceOf;
 using reference::Memory;
 using reference::Move;
 using reference::wallsFrame;
-
-// Sums of a few dozen floats whose weights hold a plane's distance, a difference of positions some 1e-6 exact.
-constexpr double kRelative = 2e-3;
-FrameImages slidingWalls(Extent extent) {
-    return wallsFrame({extent});
-}
-
-std::vector<glm::dvec3> colors(const HostImage& image) {
-    std::vector<glm::dvec3> result;
-    for (int i = 0; i < image.extent().widthPx * image.extent().heightPx; ++i) {
-        const float* p = image.pixel(0, 0) + 4 * i;
-        result.emplace_back(p[0], p[1], p[2]);
-    }
-    return result;
-}
-
-double meanOf(const std::vector<glm::dvec3>& picture) {
-    double sum = 0.0;
-    for (const glm::dvec3& e : picture) sum += luminanceOf(e);
-    return sum / double(picture.size());
-}
-
-void expectNear(const HostImage& actual, const std::vector<glm::dvec3>& expected) {
-    double mean = 0.0;
-    for (const glm::dvec3& e : expected) mean += (e.x + e.y + e.z) / 3.0 / double(expected.size());
-    ASSERT_GT(mean, 0.0);
-    for (std::size_t i = 0; i < expected.size(); ++i)
-        for (int c = 0; c < 3; ++c)
-            ASSERT_NEAR(double(actual.pixel(0, 0)[4 * int(i) + c]), expected[i][c],
-                        kRelative * (std::fabs(expected[i][c]) + mean))
-                << int(i) % actual.extent().widthPx << ", " << int(i) / actual.extent().widthPx;
-}
-
-Settings fewSamples() {
-    Settings s;
-    s.sampleCount = 4;
-    s.antiLag = 0.0f;
-    return s;
-}
-
-class Denoiser : public testing::TestWithParam<reference::Variant> {
-protected:
-    Device device_{GetParam().caps, GetParam().options};
-};
 
 /// Runs as many frames as there are and compares each with the reference.
 void followFrames(const Device& device, const std::vector<const FrameImages*>& frames, Settings settings) {
@@ -255,105 +212,6 @@ TEST_P(Denoiser, LonePixelsAreLimitedWhileTheyAreYoung) {
         EXPECT_EQ(compare(kernel, false, 1).front(), 0.0);
     }
     EXPECT_LT(compare(FilterKernel::Separable, true, 32).back(), 1e-3);
-}
-
-void compareFilters(const Device& device, Extent extent, const std::vector<FilterKernel>& kernels) {
-    const FrameImages frame = slidingWalls(extent);
-    Pipeline raw(device);
-    raw.setFrame(frame.inputs());
-    Settings noise = fewSamples();
-    noise.animatesNoise = false;
-    raw.run(noise);
-    const std::vector<glm::dvec3> noisy = colors(raw.read(Output::IndirectIrradiance));
-    for (const FilterKernel kernel : kernels) {
-        for (const FilterWeights weights : {FilterWeights::Plane, FilterWeights::Depth}) {
-            SCOPED_TRACE(testing::Message()
-                         << kFilterKernelNames[int(kernel)] << ", " << kFilterWeightsNames[int(weights)]);
-            Settings settings = noise;
-            settings.filterIterations = 2;
-            settings.filterKernel = kernel;
-            settings.filterWeights = weights;
-            std::vector<glm::dvec3> expected = noisy;
-            for (const int step : {1, 2}) {
-                if (kernel == FilterKernel::Separable) {
-                    expected = filterPass(frame, expected, settings, 2, 0, step);
-                    expected = filterPass(frame, expected, settings, 0, 2, step);
-                } else {
-                    const int radius = kernel == FilterKernel::Square3x3 ? 1 : 2;
-                    expected = filterPass(frame, expected, settings, radius, radius, step);
-                }
-            }
-            raw.run(settings);
-            expectNear(raw.read(Output::IndirectIrradiance), expected);
-        }
-    }
-}
-
-TEST_P(Denoiser, FiltersInEveryForm) {
-    for (const Extent extent : {Extent{53, 21}, Extent{7, 3}, Extent{1, 1}}) {
-        SCOPED_TRACE(testing::Message() << extent.widthPx << " x " << extent.heightPx);
-        compareFilters(device_, extent, {FilterKernel::Separable, FilterKernel::Square3x3, FilterKernel::Square5x5});
-    }
-    compareFilters(device_, {191, 347}, {FilterKernel::Separable});
-}
-
-// A row and a column in one launch are the two passes, at every step, size and feedback. (Packed pixels round between
-// the two.)
-TEST_P(Denoiser, PairsAreTwoPasses) {
-    DeviceOptions options = GetParam().options;
-    options.filterPairs = 0;
-    const Device twoPasses(GetParam().caps, options);
-    options.filterPairs = 1;
-    const Device pairs(GetParam().caps, options);
-    for (const Extent extent : {Extent{1, 1}, Extent{7, 3}, Extent{97, 141}}) {
-        const FrameImages frame = slidingWalls(extent);
-        for (const int feedback : {0, 2}) {
-            SCOPED_TRACE(testing::Message() << extent.widthPx << " x " << extent.heightPx << ", feedback " << feedback);
-            Settings settings = settingsOf(Preset::Balanced);
-            settings.filterIterations = 7;
-            settings.feedback = feedback;
-            Pipeline two(twoPasses), paired(pairs);
-            for (Pipeline* pipeline : {&two, &paired}) {
-                pipeline->setFrame(frame.inputs());
-                for (int i = 0; i < 3; ++i) pipeline->run(settings);
-            }
-            expectNear(paired.read(Output::IndirectIrradiance), colors(two.read(Output::IndirectIrradiance)));
-        }
-    }
-}
-
-// Normals that are not unit: a filter still makes means, of which none is more than the most.
-TEST_P(Denoiser, LongNormalsMakeNoLight) {
-    FrameImages frame = slidingWalls({53, 37});
-    HostImage normals = toFloat(frame.normalWs.view());
-    constexpr float kLengths[] = {0.7f, 40.0f, 1000.0f, 60000.0f};
-    for (int i = 0; i < 53 * 37; ++i)
-        if (i % 5 == 0)
-            for (int c = 0; c < 3; ++c) normals.pixel(0, 0)[4 * i + c] *= kLengths[i / 5 % 4];
-    frame.normalWs = toHalf(normals.view());
-    for (const int filterPairs : {0, 1}) {
-        DeviceOptions options = GetParam().options;
-        options.filterPairs = filterPairs;
-        Pipeline pipeline{Device(GetParam().caps, options)};
-        pipeline.setFrame(frame.inputs());
-        Settings settings = fewSamples();
-        settings.animatesNoise = false;
-        pipeline.run(settings);
-        double most = 0.0;
-        for (const glm::dvec3& e : colors(pipeline.read(Output::IndirectIrradiance)))
-            most = std::max({most, e.x, e.y, e.z});
-        settings.filterIterations = 3;
-        settings.filterNormal = 0.05f;
-        for (const FilterWeights weights : {FilterWeights::Plane, FilterWeights::Depth}) {
-            settings.filterWeights = weights;
-            pipeline.run(settings);
-            for (const glm::dvec3& e : colors(pipeline.read(Output::IndirectIrradiance)))
-                for (int c = 0; c < 3; ++c) {
-                    ASSERT_TRUE(std::isfinite(e[c]));
-                    ASSERT_LE(e[c], most * 1.001) << kFilterWeightsNames[int(weights)] << ", pairs " << filterPairs;
-                }
-        }
-    }
 }
 
 // Picked at half and a fourth: what is interpolated lies between what the picks have, what is gathered in full is as if

@@ -52,12 +52,11 @@ Row temporal(const Variant& variant, Extent extent, bool moves) {
             .work = {.bytes = bytes, .flops = (moves ? kMoving : kStill) * room.seenPixels}};
 }
 
-// history_check: bytes: the changes, and two sums a row of a tile; a pixel: two sums. history_confidence: bytes: the
-// sums in, one number out a tile; a tile: sums over the rows of 3 x 3 and of its own, two confidences (a ratio, a
-// slope, a clamp), the lesser.
+// history_check: bytes: the changes, and two sums a tile; a pixel: two sums. history_confidence: bytes: the sums in,
+// one number out a tile; a tile: sums over 3 x 3, two confidences (a ratio, a slope, a clamp), the lesser.
 Row historyCheck(const Variant& variant, Extent extent, bool isConfidence) {
-    constexpr double kPixel = 1 + kFma, kTile = (9 + 1) * CONFIDENCE_TILE_PX * 2 + 2 * 6 + 1;
-    constexpr double kSums = 2 * sizeof(float) * CONFIDENCE_TILE_PX;  // bytes a tile
+    constexpr double kPixel = 1 + kFma, kTile = 9 * 2 + 2 * 6 + 1;
+    constexpr double kSums = 2 * sizeof(float);  // bytes a tile
     const Room room(variant, extent);
     const Surface change = room.constant(1.0f);
     const Extent tiles = HistoryCheckStage::tiles(extent);

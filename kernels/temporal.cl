@@ -166,6 +166,9 @@ __kernel void temporal(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE
     const vfloat3 zero3 = make3(0.0f, 0.0f, 0.0f);
     vfloat depth = load1(inDepth, px);
     vmask isSurface = depth > 0.0f;
+    // Loads that wait for nothing, before the first branch: under way together.
+    vfloat3 normalWs = load3(inNormalWs, px), irradiance = load3(inIrradiance, px), motion = zero3;
+    if (params.hasMotion) motion = load3(inMotion, px);
     if (!anyLane(isSurface)) {
         store3(outIrradiance, px, zero3);
         store1(outLength, px, 0.0f);
@@ -173,16 +176,12 @@ __kernel void temporal(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE
         if (params.keepsMoment) store1(outMoment, px, 0.0f);
         return;
     }
-    vfloat3 normalWs = load3(inNormalWs, px);
-    vfloat3 irradiance = load3(inIrradiance, px);
     // What is brighter than any light counts as this much: squares, here and in what follows, stay finite.
     irradiance = make3(min(irradiance.x, 1e15f), min(irradiance.y, 1e15f), min(irradiance.z, 1e15f));
     int width = outIrradianceLayout.widthPx, height = outIrradianceLayout.heightPx;
 
     History h = {0.0f, zero3, 0.0f, 0.0f};
     if (params.hasHistory) {
-        vfloat3 motion = zero3;
-        if (params.hasMotion) motion = load3(inMotion, px);
         // What moves by less than this stays: a picture at rest is not resampled for rounding's sake.
         vmask moves = isSurface & (max(fabs(motion.x), fabs(motion.y)) > 1.0f / 256.0f);
         vfloat fx = toVfloat(px.x + laneIndex()) + vselect(moves, motion.x, 0.0f);

@@ -37,10 +37,14 @@ void Kernel::build() {
         const cl::Kernel kernel(program, name_.c_str());
         const auto limit = kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(impl.device);
         const auto own = kernel.getWorkGroupInfo<CL_KERNEL_COMPILE_WORK_GROUP_SIZE>(impl.device);  // 0: any
-        const std::array<int, 2> wanted =
-            own[0] > 0 ? std::array<int, 2>{int(own[0]), int(own[1])} : localSizeOf(impl.tuning, name_);
-        localSize_[0] = std::min<std::size_t>(std::size_t(wanted[0]), limit);
-        localSize_[1] = std::max<std::size_t>(std::min<std::size_t>(std::size_t(wanted[1]), limit / localSize_[0]), 1);
+        if (own[0] > 0) {
+            localSize_ = {own[0], own[1]};
+        } else {
+            const std::array<int, 2> wanted = localSizeOf(impl.tuning, name_);
+            localSize_[0] = std::min<std::size_t>(std::size_t(wanted[0]), limit);
+            localSize_[1] =
+                std::max<std::size_t>(std::min<std::size_t>(std::size_t(wanted[1]), limit / localSize_[0]), 1);
+        }
         kernel_ = kernel;
         return 0;
     });

@@ -26,7 +26,6 @@ device     llvmpipe                  *                   1       image    8x8
 type       CPU                       *                   native  planar   128x4
 type       CPU                       unpack              -       -        64x1
 vendor     NVIDIA                    *                   1       packed   16x8
-vendor     NVIDIA                    atrous_pair         -       -        128x1
 default    *                         *                   1       image    16x8
 )";
 

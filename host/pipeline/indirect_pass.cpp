@@ -135,8 +135,8 @@ void IndirectPass::denoise(const FrameSurfaces& inputs, const FrameSurfaces& pre
     const std::vector<AtrousParams>& passes = params.filterPasses;
     for (std::size_t done = 0; done < passes.size();) {
         const AtrousParams& pass = passes[done];
-        const bool isPair = device_.tuning().filterPairs && AtrousStage::canPair(pass) &&
-                            pass.radiusY == 0;  // a column follows each row
+        const bool isPair =
+            device_.tuning().filterPairs && atrous_.canPair(pass) && pass.radiusY == 0;  // a column follows each row
         done += isPair ? 2 : 1;
         const Surface& free = filtered == &filtered_[0] ? filtered_[1] : filtered_[0];
         const Surface& out = int(done) == params.feedbackPasses ? next_.irradiance : free;

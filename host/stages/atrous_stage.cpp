@@ -2,9 +2,34 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "earthshine/error.hpp"
 
 namespace earthshine {
+
+namespace {
+
+int dividedUp(int a, int b) {
+    return (a + b - 1) / b;
+}
+
+}  // namespace
+
+bool AtrousStage::canPair(const AtrousParams& params) const {
+    const bool fits =
+        lanes_ > 1 || (params.stepPx <= ATROUS_PAIR_MOST_STEP && device_.caps().maxWorkGroupSize >= ATROUS_PAIR_GROUP);
+    return params.weights == ATROUS_WEIGHTS_PLANE && params.luminanceTolerance == 0.0f && fits;
+}
+
+// Each item filters four rows beside its own, so items are as long as they can be: on a CPU much longer than that, on a
+// GPU so long that all groups run at once, four a unit (what the kernel's registers allow on NVIDIA's).
+int AtrousStage::wantedRows(Extent extent) const {
+    constexpr int kStripRows = 64, kGroupsPerUnit = 4;
+    if (lanes_ > 1) return kStripRows;
+    const int groups = kGroupsPerUnit * device_.caps().computeUnits;
+    return std::clamp(dividedUp(extent.heightPx * dividedUp(extent.widthPx, ATROUS_PAIR_GROUP), groups), 8, kStripRows);
+}
 
 void AtrousStage::set(Kernel& kernel, const Images& images, const AtrousParams& params) {
     constexpr int kMaxLanes = 16, kMaxRadius = 2;
@@ -30,12 +55,17 @@ void AtrousStage::enqueue(const Images& images, const AtrousParams& params) {
 
 void AtrousStage::enqueuePair(const Images& images, const AtrousParams& params) {
     if (!canPair(params))
-        throw DeviceError("atrous: a pair has weights of planes and no luminance; use a launch a pass");
-    set(pair_, images, params);
+        throw DeviceError(
+            "atrous: a pair has weights of planes, no luminance, no very wide step, and groups of 128; use a launch a "
+            "pass");
     const Extent extent = images.outIrradiance.extent();
-    const int widthPx = ATROUS_PAIR_STRIP(lanes_) * lanes_, heightPx = ATROUS_PAIR_ROWS(lanes_) * params.stepPx;
-    pair_.enqueueItems(std::size_t((extent.widthPx + widthPx - 1) / widthPx),
-                       std::size_t((extent.heightPx + heightPx - 1) / heightPx * params.stepPx));
+    const int rows = dividedUp(extent.heightPx, params.stepPx);  // of each remainder of the step
+    const int pieces = std::max(rows / wantedRows(extent), 1);
+    AtrousParams pair = params;
+    pair.pairRows = dividedUp(rows, pieces);
+    set(pair_, images, pair);
+    pair_.enqueueItems(std::size_t(dividedUp(extent.widthPx, ATROUS_PAIR_STRIP(lanes_) * lanes_)),
+                       std::size_t(pieces * params.stepPx));
 }
 
 }  // namespace earthshine

@@ -18,20 +18,20 @@ public:
         const Surface& outIrradiance;
     };
     explicit AtrousStage(const Device& device)
-        : lanes_(device.tuning().lanes), kernel_(device, "atrous"), pair_(device, "atrous_pair") {}
+        : device_(device), lanes_(device.tuning().lanes), kernel_(device, "atrous"), pair_(device, "atrous_pair") {}
     /// Throws DeviceError if the taps reach farther than a surface's guard.
     void enqueue(const Images& images, const AtrousParams& params);
-    /// Can a row and a column with these parameters be one launch?
-    static bool canPair(const AtrousParams& params) {
-        return params.weights == ATROUS_WEIGHTS_PLANE && params.luminanceTolerance == 0.0f;
-    }
+    /// Can a row and a column with these parameters be one launch on this device?
+    bool canPair(const AtrousParams& params) const;
     /// A row of five taps and a column of five, whatever radius `params` has, in one launch. Throws DeviceError, also
     /// for what cannot be a pair.
     void enqueuePair(const Images& images, const AtrousParams& params);
 
 private:
+    int wantedRows(Extent extent) const;  ///< of a piece that an item filters
     void set(Kernel& kernel, const Images& images, const AtrousParams& params);
 
+    Device device_;
     int lanes_;
     Kernel kernel_, pair_;
 };

@@ -4,17 +4,17 @@ namespace earthshine {
 
 void HistoryCheckStage::enqueue(const Images& images, HistoryCheckParams params) {
     const Extent extent = images.change.extent(), count = tiles(extent);
-    const auto columns = std::size_t(count.widthPx), rowsPx = std::size_t(extent.heightPx);
+    const auto columns = std::size_t(count.widthPx), rows = std::size_t(count.heightPx);
     if (extent_ != extent) {
-        sums_ = device_.impl().makeBuffer(2 * sizeof(float) * columns * rowsPx);
+        sums_ = device_.impl().makeBuffer(2 * sizeof(float) * columns * rows);
         extent_ = extent;
     }
     check_.set("inChange", images.change).set("outSums", sums_);
-    check_.enqueueItems(columns, rowsPx);
+    check_.enqueue({extent.widthPx, count.heightPx});
     params.columns = count.widthPx;
-    params.heightPx = extent.heightPx;
+    params.rows = count.heightPx;
     confidence_.set("inSums", sums_).set("outConfidence", images.outConfidence).setParams("params", params);
-    confidence_.enqueueItems(columns, std::size_t(count.heightPx));
+    confidence_.enqueueItems(columns, rows);
 }
 
 }  // namespace earthshine

@@ -16,7 +16,7 @@ public:
     };
     explicit HistoryCheckStage(const Device& device)
         : device_(device), check_(device, "history_check"), confidence_(device, "history_confidence") {}
-    /// `params.columns` and `heightPx` are set from `images`.
+    /// `params.columns` and `rows` are set from `images`.
     void enqueue(const Images& images, HistoryCheckParams params);
 
     /// Tiles in x and y of a picture.

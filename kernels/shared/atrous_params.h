@@ -9,11 +9,12 @@
 namespace earthshine {
 #endif
 
-// How much of the picture an item of atrous_pair.cl filters. One pixel's column, not long: there must be many items for a
-// GPU. Items of several lanes are a CPU's: wide strips, since memory comes in along rows; and long ones, for the four rows
-// that each filters beside its own.
+// Of atrous_pair.cl: vectors of LANES pixels that an item filters of a row. A GPU's items have one pixel, in groups of this
+// many of a row, with steps of no more than this for the sake of local memory. Items of several lanes are a CPU's: wide
+// strips, since memory comes in along rows.
 #define ATROUS_PAIR_STRIP(LANES) ((LANES) == 1 ? 1 : 16)
-#define ATROUS_PAIR_ROWS(LANES) ((LANES) == 1 ? 16 : 64)
+#define ATROUS_PAIR_GROUP 128
+#define ATROUS_PAIR_MOST_STEP 32
 
 #define ATROUS_WEIGHTS_PLANE 0
 #define ATROUS_WEIGHTS_DEPTH 1
@@ -32,7 +33,7 @@ typedef struct AtrousParams {
     f32 footprintPerM;
     f32 inverseStep;            // 1 / stepPx
     i32 limitsLone;             // 0 or 1: is a lone pixel limited by what is around it?
-    i32 padding0;
+    i32 pairRows;               // atrous_pair: rows of an item, > 0
 } AtrousParams;
 ES_ASSERT_SIZE(AtrousParams, 160);
 

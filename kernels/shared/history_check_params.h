@@ -13,8 +13,7 @@ namespace earthshine {
 typedef struct HistoryCheckParams {
     f32 keptBelow;     // ratios up to this one are noise: confidence 1
     f32 droppedAbove;  // > keptBelow: ratios from this one on are change: confidence 0
-    i32 columns;       // of tiles
-    i32 heightPx;      // of the picture
+    i32 columns, rows;  // of tiles
 } HistoryCheckParams;
 ES_ASSERT_SIZE(HistoryCheckParams, 16);
 

@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <regex>
+#include <sstream>
 #include <stdexcept>
 
 #include <fcntl.h>
@@ -15,6 +17,15 @@
 extern char** environ;
 
 namespace earthshine::test {
+
+std::string besidesProgress(const std::string& err) {
+    static const std::regex kProgress("earthshine: (compiling kernel .*|.*: [0-9]+ %)");
+    std::istringstream lines(err);
+    std::string rest;
+    for (std::string line; std::getline(lines, line);)
+        if (!std::regex_match(line, kProgress)) rest += line + "\n";
+    return rest;
+}
 
 Process::Process(const Arguments& arguments, const std::vector<std::string>& environment,
                  const std::string& programPath) {

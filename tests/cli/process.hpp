@@ -15,6 +15,10 @@ struct Result {
 
 using Arguments = std::vector<std::string>;
 
+/// What a program said beside its progress, which is said where a run is slow, as the first that compiles the kernels
+/// is on a busy machine.
+std::string besidesProgress(const std::string& err);
+
 /// A program that runs; its output goes into files of its own.
 class Process {
 public:

@@ -59,9 +59,9 @@ cl_int CL_API_CALL getDeviceInfo(cl_device_id device, cl_device_info name, std::
     }
     if (name != CL_DEVICE_EXTENSIONS) return target.clGetDeviceInfo(device, name, size, value, sizeOut);
     return extensionsWith(target,
-                          " cl_khr_device_uuid cl_khr_external_memory cl_khr_external_memory_opaque_fd"
+                          "cl_khr_device_uuid cl_khr_external_memory cl_khr_external_memory_opaque_fd"
                           " cl_khr_semaphore cl_khr_external_semaphore cl_khr_external_semaphore_opaque_fd",
-                          device, size, value, sizeOut);
+                          "cl_khr_gl_", device, size, value, sizeOut);
 }
 
 cl_mem CL_API_CALL createImageWithProperties(cl_context context, const cl_mem_properties* properties,

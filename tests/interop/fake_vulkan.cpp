@@ -31,7 +31,7 @@ template <class Handle>
 Handle make(const char* kind, std::uint64_t bytes = 0) {
     auto* object = new Object{kind, -1, bytes};
     if (bytes > 0) {
-        object->fd = ::memfd_create(kind, MFD_CLOEXEC);
+        object->fd = ::memfd_create((std::string("fake-vulkan-") + kind).c_str(), MFD_CLOEXEC);
         if (::ftruncate(object->fd, off_t(sizeof(test::ExternalObject))) != 0) violation("ftruncate");
     }
     live().insert(object);

@@ -86,9 +86,9 @@ cl_int use(cl_mem mem, const char* call) {
 cl_int CL_API_CALL getDeviceInfo(cl_device_id device, cl_device_info name, std::size_t size, void* value,
                                  std::size_t* sizeOut) {
     if (name != CL_DEVICE_EXTENSIONS) return target.clGetDeviceInfo(device, name, size, value, sizeOut);
-    std::string more = " cl_khr_gl_sharing";
+    std::string more = "cl_khr_gl_sharing";
     if (environment("EARTHSHINE_LAYER_EVENTS") == "1") more += " cl_khr_gl_event";
-    return extensionsWith(target, more, device, size, value, sizeOut);
+    return extensionsWith(target, more, "cl_khr_external_", device, size, value, sizeOut);
 }
 
 /// Takes the sharing properties out.

@@ -18,6 +18,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <map>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -107,16 +108,18 @@ private:
     GLint texture_ = 0, pack_ = 0, unpack_ = 0;
 };
 
-/// Its device's extensions, and more.
-inline cl_int extensionsWith(const cl_icd_dispatch& target, const std::string& more, cl_device_id device,
-                             std::size_t size, void* value, std::size_t* sizeOut) {
+/// Its device's extensions, and more; not those that start with `hidden`: what the other transport would open with.
+inline cl_int extensionsWith(const cl_icd_dispatch& target, const std::string& more, const std::string& hidden,
+                             cl_device_id device, std::size_t size, void* value, std::size_t* sizeOut) {
     std::size_t bytes = 0;
     if (const cl_int code = target.clGetDeviceInfo(device, CL_DEVICE_EXTENSIONS, 0, nullptr, &bytes);
         code != CL_SUCCESS)
         return code;
-    std::string text(bytes, '\0');
-    target.clGetDeviceInfo(device, CL_DEVICE_EXTENSIONS, bytes, text.data(), nullptr);
-    text.resize(std::strlen(text.c_str()));
+    std::string theirs(bytes, '\0'), text;
+    target.clGetDeviceInfo(device, CL_DEVICE_EXTENSIONS, bytes, theirs.data(), nullptr);
+    std::istringstream words(theirs.c_str());
+    for (std::string word; words >> word;)
+        if (!word.starts_with(hidden)) text += word + " ";
     text += more;
     if (sizeOut) *sizeOut = text.size() + 1;
     if (value && size < text.size() + 1) return CL_INVALID_VALUE;

@@ -1,6 +1,11 @@
 #include "raster/raster_support.hpp"
 
+#include <cstdio>
 #include <cstdlib>
+
+#include <gtest/gtest.h>
+
+#include "earthshine/error.hpp"
 
 // LeakSanitizer asks this function, if it is there: Mesa's OSMesa never frees what it allocates for its framebuffers.
 extern "C" const char* __lsan_default_suppressions();   // NOLINT(bugprone-reserved-identifier)
@@ -141,9 +146,25 @@ HostFrame readFrame(GlContext& context, const GlFrame& frame) {
             read(frame.rsmNormalWs), read(frame.rsmFlux),  read(frame.shadowDepth)};
 }
 
-GlContext& sharedContext() {
+std::string testedKind() {
     const char* const which = std::getenv("EARTHSHINE_TEST_GL");
-    static const std::unique_ptr<GlContext> context = createContext(which ? which : "egl");
+    return which ? which : "egl";
+}
+
+std::unique_ptr<GlContext> otherContext(const char* which) {
+    try {
+        return createContext(which);
+    } catch (const DeviceError& error) {
+        if (!std::getenv("EARTHSHINE_TEST_GL")) throw;
+        const std::string reason = error.what();
+        std::printf("%s\n", reason.c_str());
+        EXPECT_EQ(reason.find('\n'), std::string::npos) << "not one line";
+        return nullptr;
+    }
+}
+
+GlContext& sharedContext() {
+    static const std::unique_ptr<GlContext> context = createContext(testedKind());
     return *context;
 }
 

@@ -2,6 +2,7 @@
 // Small scenes made by hand, and frames drawn and read back as 32-bit floats.
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -47,8 +48,15 @@ struct HostFrame {
 };
 HostFrame readFrame(GlContext& context, const GlFrame& frame);
 
-/// One context a process: "egl", so that a GPU changes no result, or what the environment variable EARTHSHINE_TEST_GL
-/// names ("egl-device" tests a GPU's driver).
+/// The kind of the contexts of these tests: "egl", so that a GPU changes no result, or what the environment variable
+/// EARTHSHINE_TEST_GL names ("egl-device" tests a GPU's driver).
+std::string testedKind();
+
+/// Another kind of context. None if EARTHSHINE_TEST_GL is set and it cannot be had, which must be said in one line: a
+/// machine with a GPU's driver need not have Mesa. Without the variable every kind is there.
+std::unique_ptr<GlContext> otherContext(const char* which);
+
+/// One context a process, of the kind under test.
 GlContext& sharedContext();
 
 /// Draws one still frame of a scene in the shared context.

@@ -24,7 +24,7 @@ inline constexpr double kUnpackRecord = 4;             // three snorm16 and a ha
 inline constexpr double kPositiveFlux = 3;             // max(0, .)
 inline constexpr double kTexelOfMaps = kPositionFromDepth + kTexelRadius + kPositiveFlux;  // without records
 
-// rsm_record.clh: three snorm16 (clamp, *, rint) and a half
+// rsm_record.clh: three snorm16 (clamp, scaled and rounded at once) and a half
 inline constexpr double kStoreRecord = 3 * 4 + 1;
 
 }  // namespace earthshine::bench

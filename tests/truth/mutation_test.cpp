@@ -146,7 +146,7 @@ constexpr Mutation kEstimators[] = {
     {"disk without the map's size", "common/rsm_gather.clh", "* size * size * ES_INV_PI", "* ES_INV_PI"},
     {"disk without the pattern's weight", "common/rsm_gather.clh", "g * weight", "g"},
     {"disk denser at its centre", "common/rsm_gather.clh", "unitRadius = sqrt(u)", "unitRadius = u"},
-    {"disk that does not wrap", "common/rsm_gather.clh", "u = u - floor(u)", "u = u"},
+    {"disk that does not wrap", "common/rsm_gather.clh", "wrapped(p.w + move.shift)", "p.w + move.shift"},
     {"polar disk without its pdf", "common/rsm_gather.clh", "weight *= 2.0f * u", "weight *= 1.0f"},
     {"squared disk with u^2 for u^3", "common/rsm_gather.clh", "4.0f * u * unitRadius", "4.0f * unitRadius"},
     {"tile of half the turns", "common/rsm_gather.clh", "1.0f / 16.0f, 0.5f / 16.0f", "1.0f / 32.0f, 0.25f"},
@@ -169,9 +169,9 @@ constexpr Mutation kTexels[] = {
 };
 
 constexpr Mutation kOtherStages[] = {
-    {"normals half as long", "common/rsm_record.clh", "* 32767.0f", "* 16383.0f"},
+    {"normals half as long", "common/rsm_record.clh", "inside, 32767.0f", "inside, 16383.0f"},
     {"radius twice", "common/rsm_record.clh", "* 0x1p-112f", "* 0x1p-111f"},
-    {"flux in another channel's place", "common/rsm_record.clh", "z.lane[i], r.lane[i])", "z.lane[i], a.lane[i])"},
+    {"flux in another channel's place", "common/rsm_record.clh", "positionWs.z, flux.x,", "positionWs.z, radius,"},
     {"minified flux of one texel", "rsm_minify.cl", "flux = add3(flux, f);", "flux = f;"},
     {"minified flux of one row", "rsm_minify.cl", "int rows = min(params.minify, ", "int rows = min(1, "},
     {"minified position of the wrong column", "rsm_minify.cl", "vselectInt(isPicked, x, pickedX)",

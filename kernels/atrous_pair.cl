@@ -151,9 +151,6 @@ static ReadPixel decodePixel(FetchedPixel f) {
     return r;
 }
 
-// A piece of a row for all items of a group, with what lies two steps to either side.
-#define PIECE_PX (ATROUS_PAIR_GROUP + 4 * ATROUS_PAIR_MOST_STEP)
-
 static void share(__local float4* irradiances, __local float4* normals, int at, ReadPixel read) {
     irradiances[at] = (float4)(read.irradiance.x, read.irradiance.y, read.irradiance.z, read.depth);
     normals[at] = (float4)(read.normal.x, read.normal.y, read.normal.z, 0.0f);
@@ -171,26 +168,25 @@ static RowTaps sharedTaps(__local const float4* irradiances, __local const float
     return taps;
 }
 
-__attribute__((reqd_work_group_size(ATROUS_PAIR_GROUP, 1, 1)))
-__kernel void atrous_pair(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), SURFACE_IN(inLength),
-                          SURFACE_OUT(outIrradiance), const AtrousParams params) {
-    __local float4 irradiances[2][PIECE_PX], normals[2][PIECE_PX];  // rows in turn: one is written while one is read
-    int width = outIrradianceLayout.widthPx, height = outIrradianceLayout.heightPx, step = params.stepPx;
-    int i = (int)get_local_id(0), item = (int)get_global_id(1);
-    int top = item / step * step * params.pairRows + item % step;
-    if (top >= height) return;
+// A group's columns. Pieces of a row in local memory, with what lies two steps to either side; rows in turn: one is written
+// while one is read.
+#define GROUP ATROUS_PAIR_GROUP(1)
+#define PIECE_PX (GROUP + 4 * ATROUS_PAIR_MOST_STEP)
+static void walkColumns(INPUTS_IN, SURFACE_IN(inLength), SURFACE_OUT(outIrradiance), const AtrousParams* params, int top,
+                        __local float4* irradiances, __local float4* normals) {
+    int width = outIrradianceLayout.widthPx, height = outIrradianceLayout.heightPx, step = params->stepPx;
     int x = (int)get_global_id(0), y = top - 2 * step;
     // The first items bring what lies aside too.
-    int at = i + 2 * step, atAside = i < 2 * step ? i : ATROUS_PAIR_GROUP + i;
+    int i = (int)get_local_id(0), at = i + 2 * step, atAside = i < 2 * step ? i : GROUP + i;
     bool bringsAside = i < 4 * step;
     int aside = x - at + atAside;
 
     RowPixel row0, row1, row2, row3, row4;
     FetchedPixel own = fetchPixel(INPUTS_ARG, SURFACE_ARG(inLength), x, y), beside = own;
     if (bringsAside) beside = fetchPixel(INPUTS_ARG, SURFACE_ARG(inLength), aside, y);
-    for (int row = -2; row < params.pairRows + 2; ++row, y += step) {
-        __local float4* irradiancesHere = irradiances[row & 1];
-        __local float4* normalsHere = normals[row & 1];
+    for (int row = -2; row < params->pairRows + 2; ++row, y += step) {
+        __local float4* irradiancesHere = irradiances + (row & 1) * PIECE_PX;
+        __local float4* normalsHere = normals + (row & 1) * PIECE_PX;
         FetchedPixel arrived = own, arrivedBeside = beside;
         own = fetchPixel(INPUTS_ARG, SURFACE_ARG(inLength), x, y + step);
         if (bringsAside) beside = fetchPixel(INPUTS_ARG, SURFACE_ARG(inLength), aside, y + step);
@@ -204,15 +200,15 @@ __kernel void atrous_pair(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURF
         row1 = row2;
         row2 = row3;
         row3 = row4;
-        row4 = unfiltered(&params, px, read);
+        row4 = unfiltered(params, px, read);
         if (wantsTaps(&row4.point)) {
             RowTaps taps = sharedTaps(irradiancesHere, normalsHere, at, step);
-            row4.irradiance = filterRow(&params, px, width, &row4, read.length, &taps);
+            row4.irradiance = filterRow(params, px, width, &row4, read.length, &taps);
         }
         if (row < 2 || x >= width || out.y >= height) continue;
         vfloat length = 0.0f;
-        if (params.limitsLone) length = load1(inLength, out);
-        store3(outIrradiance, out, filterColumn(&params, &row0, &row1, &row2, &row3, &row4, out.y, height, length));
+        if (params->limitsLone) length = load1(inLength, out);
+        store3(outIrradiance, out, filterColumn(params, &row0, &row1, &row2, &row3, &row4, out.y, height, length));
     }
 }
 
@@ -248,37 +244,47 @@ static RowTaps readTaps(INPUTS_IN, Pixel px, int step) {
     return taps;
 }
 
-// Strips take stack, which CPU drivers keep for every item of a group: one item a group.
-__attribute__((reqd_work_group_size(1, 1, 1)))
-__kernel void atrous_pair(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), SURFACE_IN(inLength),
-                          SURFACE_OUT(outIrradiance), const AtrousParams params) {
-    int width = outIrradianceLayout.widthPx, height = outIrradianceLayout.heightPx, step = params.stepPx;
-    int left = (int)get_global_id(0) * (ATROUS_PAIR_STRIP(LANES) * LANES), item = (int)get_global_id(1);
-    int top = item / step * step * params.pairRows + item % step;
-    if (left >= width || top >= height) return;
-
+// An item's strip.
+static void walkStrip(INPUTS_IN, SURFACE_IN(inLength), SURFACE_OUT(outIrradiance), const AtrousParams* params, int top) {
+    int width = outIrradianceLayout.widthPx, height = outIrradianceLayout.heightPx, step = params->stepPx;
+    int left = (int)get_global_id(0) * (ATROUS_PAIR_STRIP(LANES) * LANES);
+    if (left >= width) return;
     RowPixel rows[5][ATROUS_PAIR_STRIP(LANES)];  // row r is in r % 5
-    for (int row = 0; row < params.pairRows + 4; ++row) {
+    for (int row = 0; row < params->pairRows + 4; ++row) {
         Pixel px = {left, top + (row - 2) * step};
         if (px.y - 2 * step >= height) return;
         for (int k = 0; k < ATROUS_PAIR_STRIP(LANES) && px.x < width; ++k, px.x += LANES) {
             ReadPixel read = readPixel(INPUTS_ARG, SURFACE_ARG(inLength), px);
             RowPixel* to = &rows[row % 5][k];
-            *to = unfiltered(&params, px, read);
+            *to = unfiltered(params, px, read);
             if (!wantsTaps(&to->point)) continue;
             RowTaps taps = readTaps(INPUTS_ARG, px, step);
-            to->irradiance = filterRow(&params, px, width, to, read.length, &taps);
+            to->irradiance = filterRow(params, px, width, to, read.length, &taps);
         }
         if (row < 4) continue;
         px.x = left;
         px.y -= 2 * step;
         for (int k = 0; k < ATROUS_PAIR_STRIP(LANES) && px.x < width; ++k, px.x += LANES) {
             vfloat length = 0.0f;
-            if (params.limitsLone) length = load1(inLength, px);
+            if (params->limitsLone) length = load1(inLength, px);
             store3(outIrradiance, px,
-                   filterColumn(&params, &rows[(row + 1) % 5][k], &rows[(row + 2) % 5][k], &rows[(row + 3) % 5][k],
+                   filterColumn(params, &rows[(row + 1) % 5][k], &rows[(row + 2) % 5][k], &rows[(row + 3) % 5][k],
                                 &rows[(row + 4) % 5][k], &rows[row % 5][k], px.y, height, length));
         }
     }
 }
 #endif
+
+__attribute__((reqd_work_group_size(ATROUS_PAIR_GROUP(LANES), 1, 1)))
+__kernel void atrous_pair(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), SURFACE_IN(inLength),
+                          SURFACE_OUT(outIrradiance), const AtrousParams params) {
+    int item = (int)get_global_id(1), step = params.stepPx;
+    int top = item / step * step * params.pairRows + item % step;
+    if (top >= outIrradianceLayout.heightPx) return;
+#if LANES == 1
+    __local float4 irradiances[2 * PIECE_PX], normals[2 * PIECE_PX];
+    walkColumns(INPUTS_ARG, SURFACE_ARG(inLength), SURFACE_ARG(outIrradiance), &params, top, irradiances, normals);
+#else
+    walkStrip(INPUTS_ARG, SURFACE_ARG(inLength), SURFACE_ARG(outIrradiance), &params, top);
+#endif
+}

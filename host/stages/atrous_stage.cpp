@@ -17,8 +17,8 @@ int dividedUp(int a, int b) {
 }  // namespace
 
 bool AtrousStage::canPair(const AtrousParams& params) const {
-    const bool fits =
-        lanes_ > 1 || (params.stepPx <= ATROUS_PAIR_MOST_STEP && device_.caps().maxWorkGroupSize >= ATROUS_PAIR_GROUP);
+    const bool fits = lanes_ > 1 || (params.stepPx <= ATROUS_PAIR_MOST_STEP &&
+                                     device_.caps().maxWorkGroupSize >= ATROUS_PAIR_GROUP(1));
     return params.weights == ATROUS_WEIGHTS_PLANE && params.luminanceTolerance == 0.0f && fits;
 }
 
@@ -28,7 +28,8 @@ int AtrousStage::wantedRows(Extent extent) const {
     constexpr int kStripRows = 64, kGroupsPerUnit = 4;
     if (lanes_ > 1) return kStripRows;
     const int groups = kGroupsPerUnit * device_.caps().computeUnits;
-    return std::clamp(dividedUp(extent.heightPx * dividedUp(extent.widthPx, ATROUS_PAIR_GROUP), groups), 8, kStripRows);
+    return std::clamp(dividedUp(extent.heightPx * dividedUp(extent.widthPx, ATROUS_PAIR_GROUP(1)), groups), 8,
+                      kStripRows);
 }
 
 void AtrousStage::set(Kernel& kernel, const Images& images, const AtrousParams& params) {

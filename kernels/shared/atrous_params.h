@@ -9,11 +9,11 @@
 namespace earthshine {
 #endif
 
-// Of atrous_pair.cl: vectors of LANES pixels that an item filters of a row. A GPU's items have one pixel, in groups of this
-// many of a row, with steps of no more than this for the sake of local memory. Items of several lanes are a CPU's: wide
-// strips, since memory comes in along rows.
+// Of atrous_pair.cl: vectors of LANES pixels that an item filters of a row, and items a group. A GPU's items have one pixel;
+// their groups are pieces of a row, and steps no wider than local memory is large. Items of several lanes are a CPU's: wide
+// strips, since memory comes in along rows, on a stack that CPU drivers keep for every item of a group: one item a group.
 #define ATROUS_PAIR_STRIP(LANES) ((LANES) == 1 ? 1 : 16)
-#define ATROUS_PAIR_GROUP 128
+#define ATROUS_PAIR_GROUP(LANES) ((LANES) == 1 ? 128 : 1)
 #define ATROUS_PAIR_MOST_STEP 32
 
 #define ATROUS_WEIGHTS_PLANE 0

@@ -25,11 +25,11 @@ constexpr double kDirection = 2 * (kDot3 + 1) + 2 * 2;
 constexpr double kTap = 2 + (kDot3 + kFma + 1) + kFma + (1 + kFma) + 1 + 1 + 1 + 1 + kMad3;
 // atrous.cl, whose luminance guides nothing here, takes the difference all the same, of each tap and a pixel.
 constexpr double kGuideTap = kLuminance + 1 + 2 + kFma, kGuide = kLuminance;
-// In the first iteration, a lone pixel's limit: a tap's luminance, one more tap, its share; their mean, the limit; how
-// lone it is; its luminance, by how much that is too bright, what is left of it.
-constexpr double kLimitTap = kLuminance + 3, kLimit = 2 + (1 + kFma + 1) + 5 + kLuminance + 3 + (2 + kScale3);
+// In the first iteration, a lone pixel's limit: a tap's luminance, one more tap; a pixel's shares, its luminance times
+// the taps, the limit times them. (Few are above it.)
+constexpr double kLimitTap = kLuminance + 2, kLimit = 2 + (kLuminance + 1) + (1 + kFma + 1);
 
-// bytes: depth and out at every pixel; irradiance, normals and length where there is no sky.
+// bytes: depth and out at every pixel; irradiance, normals and length where there is no sky, though pairs read all.
 Row atrous(const Variant& variant, Extent extent, FilterKernel kernel, std::size_t pass, bool isPair = false) {
     const Room room(variant, extent);
     const Surface in = room.noisy(), out = room.three(), length = room.constant(1.0f);

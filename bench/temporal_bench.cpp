@@ -24,8 +24,9 @@ constexpr double kStill = 2 + kSeenPlane + kTap + kScale3 + 3 + kBlend;
 // The same; where it was, kept in range; four taps, each with its place and bilinear weight.
 constexpr double kMoving = 2 + kSeenPlane + 6 + 2 + 4 * (2 + kTap + 3 + kAddTap) + kBlend;
 
-// bytes: depth and three outputs at every pixel; the estimate, normals, motion, the previous frame's normals and depths
-// and history where there is no sky. Taps that moving pixels share count once; none is lost, none is rescued.
+// bytes: depth and three outputs at every pixel; the estimate, normals, motion (which a GPU reads on sky too), the
+// previous frame's normals and depths and history where there is no sky. Taps that moving pixels share count once; none
+// is lost, none is rescued.
 Row temporal(const Variant& variant, Extent extent, bool moves) {
     const Room room(variant, extent, moves);
     const Surface in = room.noisy(), out = room.three(), outLength = room.one(), outChange = room.one();

@@ -106,7 +106,8 @@ __kernel void atrous(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE_I
                 weight = near * near;
             } else {
                 float inverseWay = sqrt(inverseWay2) / params.depthTolerance;
-                weight = es_exp(-fabs(tapDepth - depth) * cosine * inverseWay + min(normalLikeness(&params, &p, tapNormal), 1.0f) - 1.0f);
+                vfloat like = min(normalLikeness(&params, &p, tapNormal), 1.0f);
+                weight = es_exp(-fabs(tapDepth - depth) * cosine * inverseWay + like - 1.0f);
             }
             weight = vselect(isThere, share * weight, 0.0f);
             sumWeights += weight;

@@ -10,7 +10,7 @@
 //   in   inLength       frames of history
 //   out  outIrradiance  lx, >= 0, finite; 0 on sky
 //   Work 2D: strips of ATROUS_PAIR_STRIP x LANES pixels; params.pairRows rows, a step apart, of each remainder of the
-//   step: remainders of the first rows first. Groups as required below; items past the edge write nothing.
+//   step: remainders of the first rows first. Groups of ATROUS_PAIR_GROUP; items past the edge write nothing.
 
 #include "atrous.clh"
 
@@ -39,7 +39,7 @@ typedef struct RowPixel {
 static int wayOf(int tap) { return tap < 2 ? tap - 2 : tap - 1; }
 static float shareOf(const AtrousParams* params, int way) { return abs(way) == 1 ? params->share1 : params->share2; }
 
-// The sum of the shares of those taps that lie in [0; size), of `count` pixels from `first` on (all one row: of one).
+// The sum of the shares of those taps that lie in [0; size). Lanes lie at `first` and what follows; at first all, if count is 1.
 static vfloat sharesInside(const AtrousParams* params, int first, int count, int size) {
     int step = params->stepPx;
     vfloat sum = 2.0f * (params->share1 + params->share2);
@@ -104,7 +104,7 @@ static vfloat3 filterColumn(const AtrousParams* params, const RowPixel* above2, 
     vfloat slopeY = growth(p, params->cameraRays.rayDy), offsetY = growth(p, params->cameraRays.originDy);
     vfloat offset = -p->depth * p->slope, sumWeights = 0.0f;
     vfloat3 sum = make3(0.0f, 0.0f, 0.0f), mean = row->irradiance;
-    if (!wantsTaps(p)) return mean;
+    if (!wantsTaps(p)) return select3(p->depth > 0.0f, mean, sum);
 #pragma unroll
     for (int tap = 0; tap < 4; ++tap) {
         int j = wayOf(tap);
@@ -151,7 +151,7 @@ static ReadPixel decodePixel(FetchedPixel f) {
     return r;
 }
 
-static void share(__local float4* irradiances, __local float4* normals, int at, ReadPixel read) {
+static void putTap(__local float4* irradiances, __local float4* normals, int at, ReadPixel read) {
     irradiances[at] = (float4)(read.irradiance.x, read.irradiance.y, read.irradiance.z, read.depth);
     normals[at] = (float4)(read.normal.x, read.normal.y, read.normal.z, 0.0f);
 }
@@ -171,7 +171,6 @@ static RowTaps sharedTaps(__local const float4* irradiances, __local const float
 // A group's columns. Pieces of a row in local memory, with what lies two steps to either side; rows in turn: one is written
 // while one is read.
 #define GROUP ATROUS_PAIR_GROUP(1)
-#define PIECE_PX (GROUP + 4 * ATROUS_PAIR_MOST_STEP)
 static void walkColumns(INPUTS_IN, SURFACE_IN(inLength), SURFACE_OUT(outIrradiance), const AtrousParams* params, int top,
                         __local float4* irradiances, __local float4* normals) {
     int width = outIrradianceLayout.widthPx, height = outIrradianceLayout.heightPx, step = params->stepPx;
@@ -185,15 +184,15 @@ static void walkColumns(INPUTS_IN, SURFACE_IN(inLength), SURFACE_OUT(outIrradian
     FetchedPixel own = fetchPixel(INPUTS_ARG, SURFACE_ARG(inLength), x, y), beside = own;
     if (bringsAside) beside = fetchPixel(INPUTS_ARG, SURFACE_ARG(inLength), aside, y);
     for (int row = -2; row < params->pairRows + 2; ++row, y += step) {
-        __local float4* irradiancesHere = irradiances + (row & 1) * PIECE_PX;
-        __local float4* normalsHere = normals + (row & 1) * PIECE_PX;
+        __local float4* irradiancesHere = irradiances + (row & 1) * ATROUS_PAIR_PIECE_PX;
+        __local float4* normalsHere = normals + (row & 1) * ATROUS_PAIR_PIECE_PX;
         FetchedPixel arrived = own, arrivedBeside = beside;
         own = fetchPixel(INPUTS_ARG, SURFACE_ARG(inLength), x, y + step);
         if (bringsAside) beside = fetchPixel(INPUTS_ARG, SURFACE_ARG(inLength), aside, y + step);
 
         ReadPixel read = decodePixel(arrived);
-        share(irradiancesHere, normalsHere, at, read);
-        if (bringsAside) share(irradiancesHere, normalsHere, atAside, decodePixel(arrivedBeside));
+        putTap(irradiancesHere, normalsHere, at, read);
+        if (bringsAside) putTap(irradiancesHere, normalsHere, atAside, decodePixel(arrivedBeside));
         barrier(CLK_LOCAL_MEM_FENCE);
         Pixel px = {x, y}, out = {x, y - 2 * step};
         row0 = row1;
@@ -216,7 +215,7 @@ static void walkColumns(INPUTS_IN, SURFACE_IN(inLength), SURFACE_OUT(outIrradian
 
 static ReadPixel readPixel(INPUTS_IN, SURFACE_IN(inLength), Pixel px) {
     const vfloat3 zero3 = make3(0.0f, 0.0f, 0.0f);
-    ReadPixel r = {zero3, zero3, NAN, 0.0f};
+    ReadPixel r = {zero3, zero3, (vfloat)(NAN), (vfloat)(0.0f)};
     if (px.y < 0 || px.y >= inDepthLayout.heightPx) return r;
     vfloat depth = load1(inDepth, px);
     r.depth = vselect(depth > 0.0f, depth, NAN);
@@ -282,7 +281,7 @@ __kernel void atrous_pair(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURF
     int top = item / step * step * params.pairRows + item % step;
     if (top >= outIrradianceLayout.heightPx) return;
 #if LANES == 1
-    __local float4 irradiances[2 * PIECE_PX], normals[2 * PIECE_PX];
+    __local float4 irradiances[2 * ATROUS_PAIR_PIECE_PX], normals[2 * ATROUS_PAIR_PIECE_PX];
     walkColumns(INPUTS_ARG, SURFACE_ARG(inLength), SURFACE_ARG(outIrradiance), &params, top, irradiances, normals);
 #else
     walkStrip(INPUTS_ARG, SURFACE_ARG(inLength), SURFACE_ARG(outIrradiance), &params, top);

@@ -2,12 +2,12 @@
 //   in   inChange   d, lx: temporal's, 0 on sky
 //   out  outSums    (sum d, sum d^2) a tile: CONFIDENCE_TILE_PX
 //   Work 2D, one item per LANES columns of a tile, of which a group adds up those of its tiles; items past the edge add
-//   nothing. (An item a tile would be too few for a GPU: nine times as long on an H100.)
+//   nothing. (An item a tile would be too few for a GPU.)
 
 #include "history_check_params.h"
 #include "surface.clh"
 
-#define GROUP 128
+#define GROUP 32  // as many items as any device takes; on CPUs, of several lanes, faster than more
 #define ITEMS (CONFIDENCE_TILE_PX / LANES)  // a tile
 
 __attribute__((reqd_work_group_size(GROUP, 1, 1)))

@@ -166,9 +166,12 @@ __kernel void temporal(SURFACE_IN(inIrradiance), SURFACE_IN(inNormalWs), SURFACE
     const vfloat3 zero3 = make3(0.0f, 0.0f, 0.0f);
     vfloat depth = load1(inDepth, px);
     vmask isSurface = depth > 0.0f;
-    // Loads that wait for nothing, before the first branch: under way together.
-    vfloat3 normalWs = load3(inNormalWs, px), irradiance = load3(inIrradiance, px), motion = zero3;
-    if (params.hasMotion) motion = load3(inMotion, px);
+    vfloat3 normalWs = zero3, irradiance = zero3, motion = zero3;
+    if (LANES == 1 || anyLane(isSurface)) {  // on a GPU before the first branch, so that all are under way together
+        normalWs = load3(inNormalWs, px);
+        irradiance = load3(inIrradiance, px);
+        if (params.hasMotion) motion = load3(inMotion, px);
+    }
     if (!anyLane(isSurface)) {
         store3(outIrradiance, px, zero3);
         store1(outLength, px, 0.0f);

@@ -38,6 +38,10 @@ void Kernel::build() {
         const auto limit = kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(impl.device);
         const auto own = kernel.getWorkGroupInfo<CL_KERNEL_COMPILE_WORK_GROUP_SIZE>(impl.device);  // 0: any
         if (own[0] > 0) {
+            // The device's limit decides: rusticl (Mesa 22.3) runs groups beyond the one it tells for a kernel.
+            if (own[0] * own[1] > impl.caps.maxWorkGroupSize)
+                throw DeviceError(fmt::format("{}: works in groups of {} items, this device takes {}", name_,
+                                              own[0] * own[1], impl.caps.maxWorkGroupSize));
             localSize_ = {own[0], own[1]};
         } else {
             const std::array<int, 2> wanted = localSizeOf(impl.tuning, name_);

@@ -39,7 +39,7 @@ public:
     /// Launches `x` by `y` work-items, rounded up to whole groups.
     void enqueueItems(std::size_t x, std::size_t y);
 
-    /// Work-items a group, x and y: the tuning table's, within the kernel's own limit.
+    /// Work-items a group, x and y: what the kernel requires, or the tuning table's within the kernel's limit.
     std::array<std::size_t, 2> localSize() {
         build();
         return localSize_;

@@ -17,18 +17,20 @@ int dividedUp(int a, int b) {
 }  // namespace
 
 bool AtrousStage::canPair(const AtrousParams& params) const {
-    const bool fits = lanes_ > 1 || (params.stepPx <= ATROUS_PAIR_MOST_STEP &&
-                                     device_.caps().maxWorkGroupSize >= ATROUS_PAIR_GROUP(1));
-    return params.weights == ATROUS_WEIGHTS_PLANE && params.luminanceTolerance == 0.0f && fits;
+    if (params.weights != ATROUS_WEIGHTS_PLANE || params.luminanceTolerance > 0.0f) return false;
+    const DeviceCaps& caps = device_.caps();
+    return lanes() > 1 || (params.stepPx <= ATROUS_PAIR_MOST_STEP && caps.maxWorkGroupSize >= ATROUS_PAIR_GROUP(1) &&
+                           caps.localMemoryBytes >= ATROUS_PAIR_LOCAL_BYTES);
 }
 
-// Each item filters four rows beside its own, so items are as long as they can be: on a CPU much longer than that, on a
-// GPU so long that all groups run at once, four a unit (what the kernel's registers allow on NVIDIA's).
+// Each item filters four rows beside its own, so items are as long as they can be, or up to twice that: on a CPU much
+// longer than four rows; on a GPU so long that all groups run at once, four a unit (what the kernel's registers allow
+// on an H100).
 int AtrousStage::wantedRows(Extent extent) const {
-    constexpr int kStripRows = 64, kGroupsPerUnit = 4;
-    if (lanes_ > 1) return kStripRows;
+    constexpr int kLeastRows = 8, kStripRows = 64, kGroupsPerUnit = 4;
+    if (lanes() > 1) return kStripRows;
     const int groups = kGroupsPerUnit * device_.caps().computeUnits;
-    return std::clamp(dividedUp(extent.heightPx * dividedUp(extent.widthPx, ATROUS_PAIR_GROUP(1)), groups), 8,
+    return std::clamp(dividedUp(extent.heightPx * dividedUp(extent.widthPx, ATROUS_PAIR_GROUP(1)), groups), kLeastRows,
                       kStripRows);
 }
 
@@ -57,15 +59,18 @@ void AtrousStage::enqueue(const Images& images, const AtrousParams& params) {
 void AtrousStage::enqueuePair(const Images& images, const AtrousParams& params) {
     if (!canPair(params))
         throw DeviceError(
-            "atrous: a pair has weights of planes, no luminance, no very wide step, and groups of 128; use a launch a "
-            "pass");
+            fmt::format("atrous_pair: filters by planes alone, with one lane at steps of up to {} px (asked for: {}) "
+                        "in groups of {} "
+                        "items with {} bytes of local memory (this device: {}, {})",
+                        ATROUS_PAIR_MOST_STEP, params.stepPx, ATROUS_PAIR_GROUP(1), ATROUS_PAIR_LOCAL_BYTES,
+                        device_.caps().maxWorkGroupSize, device_.caps().localMemoryBytes));
     const Extent extent = images.outIrradiance.extent();
     const int rows = dividedUp(extent.heightPx, params.stepPx);  // of each remainder of the step
     const int pieces = std::max(rows / wantedRows(extent), 1);
     AtrousParams pair = params;
     pair.pairRows = dividedUp(rows, pieces);
     set(pair_, images, pair);
-    pair_.enqueueItems(std::size_t(dividedUp(extent.widthPx, ATROUS_PAIR_STRIP(lanes_) * lanes_)),
+    pair_.enqueueItems(std::size_t(dividedUp(extent.widthPx, ATROUS_PAIR_STRIP(lanes()) * lanes())),
                        std::size_t(pieces * params.stepPx));
 }
 

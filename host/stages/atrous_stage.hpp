@@ -18,7 +18,7 @@ public:
         const Surface& outIrradiance;
     };
     explicit AtrousStage(const Device& device)
-        : device_(device), lanes_(device.tuning().lanes), kernel_(device, "atrous"), pair_(device, "atrous_pair") {}
+        : device_(device), kernel_(device, "atrous"), pair_(device, "atrous_pair") {}
     /// Throws DeviceError if the taps reach farther than a surface's guard.
     void enqueue(const Images& images, const AtrousParams& params);
     /// Can a row and a column with these parameters be one launch on this device?
@@ -28,11 +28,11 @@ public:
     void enqueuePair(const Images& images, const AtrousParams& params);
 
 private:
+    int lanes() const { return device_.tuning().lanes; }
     int wantedRows(Extent extent) const;  ///< of a piece that an item filters
     void set(Kernel& kernel, const Images& images, const AtrousParams& params);
 
     Device device_;
-    int lanes_;
     Kernel kernel_, pair_;
 };
 

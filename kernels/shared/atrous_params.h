@@ -9,12 +9,13 @@
 namespace earthshine {
 #endif
 
-// Of atrous_pair.cl: vectors of LANES pixels that an item filters of a row, and items a group. A GPU's items have one pixel;
-// their groups are pieces of a row, and steps no wider than local memory is large. Items of several lanes are a CPU's: wide
-// strips, since memory comes in along rows, on a stack that CPU drivers keep for every item of a group: one item a group.
-#define ATROUS_PAIR_STRIP(LANES) ((LANES) == 1 ? 1 : 16)
-#define ATROUS_PAIR_GROUP(LANES) ((LANES) == 1 ? 128 : 1)
-#define ATROUS_PAIR_MOST_STEP 32
+// Of atrous_pair.cl. A GPU's items have one pixel of a row; their groups are pieces of it. Items of several lanes are a
+// CPU's: wide strips, since memory comes in along rows, on a stack that CPU drivers keep for every item of a group.
+#define ATROUS_PAIR_STRIP(LANES) ((LANES) == 1 ? 1 : 16)   // vectors of LANES pixels an item
+#define ATROUS_PAIR_GROUP(LANES) ((LANES) == 1 ? 128 : 1)  // items a group, in x
+#define ATROUS_PAIR_MOST_STEP 32                           // with LANES 1: what a group of this keeps in local memory:
+#define ATROUS_PAIR_PIECE_PX (ATROUS_PAIR_GROUP(1) + 4 * ATROUS_PAIR_MOST_STEP)  // two rows of so many pixels, and
+#define ATROUS_PAIR_LOCAL_BYTES (2 * ATROUS_PAIR_PIECE_PX * 32)                  // 32 bytes a pixel
 
 #define ATROUS_WEIGHTS_PLANE 0
 #define ATROUS_WEIGHTS_DEPTH 1

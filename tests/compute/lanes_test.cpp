@@ -51,6 +51,9 @@ TEST_P(Lanes, HelpersAgreeWithScalars) {
         EXPECT_EQ(row(LANES_TO_INT), float(int(a[i] * 100.0f)));
         EXPECT_EQ(row(LANES_SELECT_INT), a[i] < b[i] ? float(int(a[i] * 100.0f)) : 7.0f);
         EXPECT_EQ(row(LANES_MAD), a[i] * 2.0f + b[i]);  // doubling is exact: fused or not, one rounding
+        EXPECT_EQ(row(LANES_SATURATE), a[i] > 0.6f ? 0.0f : std::clamp(2.0f * a[i], 0.0f, 1.0f));  // NaN is 0
+        EXPECT_EQ(row(LANES_SATURATE_INFINITE), a[i] > 0.0f ? 1.0f : 0.0f);
+        EXPECT_NEAR(double(row(LANES_RECIP)) * (x + 1.5), 1.0, 4e-7);  // 3 ulp and the sum's own
         // 1e-6: a handful of roundings of numbers below 4; whether they are fused is the compiler's choice.
         EXPECT_NEAR(double(row(LANES_DOT3)), x * y + y * y + z * x, 1e-6);
         EXPECT_EQ(row(LANES_SELECT3), a[i] < b[i] ? a[i] - b[i] : a[i]);

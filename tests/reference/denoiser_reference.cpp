@@ -205,7 +205,7 @@ std::vector<glm::dvec3> filterPass(const FrameImages& f, const std::vector<glm::
             // Half at a step of two; from four pixels on a fourth of what halving would leave.
             const double fullFrames = std::max(double(settings.filterFade) / (step < 4 ? step : 4 * step), 0.5);
             double fade = settings.filterFade < 1024.0f ? std::min(fullFrames / length, 1.0) : 1.0;
-            if (fade < 0.1) fade = 0.0;
+            if (fade < 0.0999) fade = 0.0;
             const double variance = memory ? std::max(memory->moment[at] - l * l, 0.0) / length : 0.0;
             const double deviations = double(settings.filterLuminance) / step;  // an iteration has twice the step
             const double guidance = deviations > 0.0 ? std::clamp(length - 3.0, 0.0, 1.0) : 0.0;

@@ -27,5 +27,9 @@ __kernel void lanes_probe(__global const float* restrict inA, __global const flo
     rows[LANES_LUMINANCE] = luminance(p);
     rows[LANES_SELECT_INT] = toVfloat(vselectInt(less, toVint(a * 100.0f), 7));
     rows[LANES_MAD] = vmad(a, 2.0f, b);
+    vfloat twice = vselect(a > 0.6f, NAN, 2.0f * a), infinite = vselect(a > 0.0f, INFINITY, -INFINITY);
+    rows[LANES_SATURATE] = vsaturate(twice);
+    rows[LANES_SATURATE_INFINITE] = vsaturate(infinite);
+    rows[LANES_RECIP] = vrecip(a + 1.5f);
     for (int row = 0; row < LANES_ROWS; ++row) *(__global vfloat*)(outRows + row * params.count + i) = rows[row];
 }

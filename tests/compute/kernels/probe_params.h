@@ -30,7 +30,10 @@ ES_ASSERT_SIZE(ProbeParams, 16);
 #define LANES_LUMINANCE 10
 #define LANES_SELECT_INT 11
 #define LANES_MAD 12
-#define LANES_ROWS 13
+#define LANES_SATURATE 13
+#define LANES_SATURATE_INFINITE 14
+#define LANES_RECIP 15
+#define LANES_ROWS 16
 
 #ifndef ES_DIALECT_CL
 }  // namespace earthshine

@@ -58,7 +58,7 @@ static vfloat likeness(const SeenPlane* p, const TemporalParams* params, float l
     distance = vmad(dy, vmad(depth, p->slopeY, p->offsetY), distance);
     vfloat tolerance = looseness * params->planeTolerance * p->depth;
     vfloat3 turn = sub3(normal, p->normal);
-    vfloat like = max(1.0f - dot3(turn, turn) * (1.0f / params->normalTolerance), 0.0f);
+    vfloat like = max(1.0f - dot3(turn, turn) * params->inverseNormalTolerance, 0.0f);
     if (!params->weighsTurn) like = vselect(like > 0.0f, 1.0f, 0.0f);
     return vselect((depth > 0.0f) & (fabs(distance) <= tolerance), like, 0.0f);
 }

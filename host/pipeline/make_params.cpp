@@ -41,7 +41,7 @@ TemporalParams temporalParams(const Settings& settings, const FrameGeometry& fra
     p.maxFrames = float(settings.historyFrames);
     p.planeTolerance = kPlaneTolerance;
     p.weighsTurn = settings.filterWeights == FilterWeights::Plane ? 1 : 0;
-    p.normalTolerance = p.weighsTurn ? kWeighedNormalTolerance : kNormalTolerance;
+    p.inverseNormalTolerance = 1.0f / (p.weighsTurn ? kWeighedNormalTolerance : kNormalTolerance);
     p.fireflyFactor = settings.fireflyFactor;
     return p;
 }

@@ -16,7 +16,7 @@ typedef struct TemporalParams {
     i32 usesConfidence;     // 0 or 1: history_check.cl ran after the previous frame
     f32 maxFrames;          // [1; 1024]: frames that history is worth at most
     f32 planeTolerance;     // > 0, of the distance: how far off the surface's plane a tap may lie
-    f32 normalTolerance;    // > 0: squared difference of the unit normals then and now from which on they are another's
+    f32 inverseNormalTolerance;  // > 0: 1 / squared difference of unit normals from which on they are another's
     i32 weighsTurn;         // 0 or 1: does a tap count for less the more it is turned?
     f32 fireflyFactor;      // 0 = off, else >= 1: times the brightest neighbour
     i32 keepsMoment;        // 0 or 1: are moments asked for?

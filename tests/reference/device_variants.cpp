@@ -64,7 +64,8 @@ std::vector<Variant> quickVariants() {
     std::vector<Variant> variants;
     for (const Variant& v : allVariants()) {
         const bool isLlvmpipe = v.caps.name.find("llvmpipe") != std::string::npos;
-        if (isEvery || !isLlvmpipe || v.options.lanes == 1 || (v.options.lanes == 16 && v.options.storage == "planar"))
+        const bool isWide = v.options.storage == "planar" && v.options.lanes == (isLlvmpipe ? 16 : 4);
+        if (isEvery || !(isLlvmpipe || v.caps.type == "GPU") || v.options.lanes == 1 || isWide)
             variants.push_back(v);
     }
     return variants;

@@ -65,8 +65,7 @@ std::vector<Variant> quickVariants() {
     for (const Variant& v : allVariants()) {
         const bool isLlvmpipe = v.caps.name.find("llvmpipe") != std::string::npos;
         const bool isWide = v.options.storage == "planar" && v.options.lanes == (isLlvmpipe ? 16 : 4);
-        if (isEvery || !(isLlvmpipe || v.caps.type == "GPU") || v.options.lanes == 1 || isWide)
-            variants.push_back(v);
+        if (isEvery || !(isLlvmpipe || v.caps.type == "GPU") || v.options.lanes == 1 || isWide) variants.push_back(v);
     }
     return variants;
 }

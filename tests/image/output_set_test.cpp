@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
+
 #include "earthshine/error.hpp"
 #include "temp_folder.hpp"
 

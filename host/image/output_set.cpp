@@ -34,6 +34,21 @@ std::string hiddenName(const fs::path& path, const char* ending) {
     return fmt::format(".{}.{}-{}.{}", path.filename().string(), ::getpid(), counter++, ending);
 }
 
+// A file's temporary one stands in a folder of its own: once that is gone, whoever is about to open the file by its
+// name cannot make it anew.
+fs::path hiddenFolder(const fs::path& path, const fs::path& temporary) {
+    return temporary.parent_path() == path.parent_path() ? temporary : temporary.parent_path();
+}
+
+void removeWhole(const fs::path& folder) noexcept {
+    constexpr int kMostTries = 100;  // another thread may put a file into it between the removal of both
+    std::error_code error;
+    for (int i = 0; i < kMostTries; ++i) {
+        fs::remove_all(folder, error);
+        if (!error) return;
+    }
+}
+
 [[noreturn]] void refuse(const fs::path& path, std::string_view what, int code) {
     throw Error(fmt::format("{}: {}: {}", path.string(), what, std::strerror(code)));
 }
@@ -75,9 +90,15 @@ fs::path OutputSet::addFile(const fs::path& path) {
     const fs::file_status status = fs::status(output.resolved, error);
     if (fs::exists(status) && !fs::is_regular_file(status))
         throw Error(fmt::format("{}: is no file; choose another name", path.string()));
-    output.temporary = output.resolved.parent_path() / hiddenName(output.resolved, "tmp");
+    const fs::path hidden = output.resolved.parent_path() / hiddenName(output.resolved, "tmp");
+    if (!fs::create_directory(hidden, error)) refuse(path, "cannot be written", error.value());
+    output.temporary = hidden / output.resolved.filename();
     const int file = ::open(output.temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
-    if (file < 0) refuse(path, "cannot be written", errno);
+    if (file < 0) {
+        const int code = errno;
+        removeWhole(hidden);
+        refuse(path, "cannot be written", code);
+    }
     ::close(file);
     outputs_.push_back(output);
     resolved_.insert(output.resolved);
@@ -122,6 +143,7 @@ void OutputSet::commit() {
         }
         outputs_.erase(outputs_.begin());
         resolved_.erase(output.resolved);
+        removeWhole(hiddenFolder(output.resolved, output.temporary));
         if (!old.empty()) fs::remove_all(old, error);
     }
 }
@@ -133,8 +155,7 @@ std::vector<fs::path> OutputSet::paths() const {
 }
 
 void OutputSet::discard() noexcept {
-    std::error_code ignored;
-    for (const Output& output : outputs_) fs::remove_all(output.temporary, ignored);
+    for (const Output& output : outputs_) removeWhole(hiddenFolder(output.resolved, output.temporary));
     outputs_.clear();
     resolved_.clear();
 }

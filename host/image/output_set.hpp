@@ -34,7 +34,8 @@ public:
     /// The paths announced, in order.
     std::vector<std::filesystem::path> paths() const;
 
-    /// Removes the temporary outputs of every set, for good. Thread-safe.
+    /// Removes the temporary outputs of every set, for good: a path that addFile() gave can no longer be opened.
+    /// Thread-safe.
     static void discardAll();
 
     /// discardAll, after which whoever adds, commits or discards outputs waits forever, so that no new ones appear

@@ -134,6 +134,10 @@ void GlSharingTransport::release(const std::vector<SharedImage>& images, Transpo
             device().queue.flush();
             void* sync = createSyncFromClEvent_(device().context(), released(), 0);
             if (!sync) {
+                // A driver may list the extension and yet take no events of this context: it is not asked again, and
+                // its error is not of what comes next.
+                createSyncFromClEvent_ = nullptr;
+                api().forgetErrors();
                 released.wait();
                 return;
             }

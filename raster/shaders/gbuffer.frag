@@ -24,11 +24,15 @@ layout(location = 4) out vec4 outEmission;
 
 const float kLargestHalf = 65504.0;
 
-// Both projections are interpolated alike, rather than one taken from gl_FragCoord: so that what stands still has a
-// motion of exactly 0. A point that was behind the camera gets a motion that leaves any picture.
+// Both projections are interpolated alike, rather than one taken from gl_FragCoord, and subtracted before they are
+// multiplied, so that what stands still has a motion of exactly 0. (The plain difference of two quotients has not where
+// a compiler fuses a product with the subtraction: a GPU's did.) With p the previous and c this position,
+//   p.xy / p.w - c.xy / c.w = ((p - c).xy - (p - c).w c.xy / c.w) / p.w.
+// A point that was behind the camera gets a motion that leaves any picture.
 vec2 motionPx() {
     if (previousClipXyw.z <= 0.0) return vec2(kLargestHalf);
-    vec2 ndcMotion = previousClipXyw.xy / previousClipXyw.z - clipXyw.xy / clipXyw.z;
+    vec3 difference = previousClipXyw - clipXyw;
+    vec2 ndcMotion = (difference.xy - difference.z * (clipXyw.xy / clipXyw.z)) / previousClipXyw.z;
     return clamp(ndcMotion * 0.5 * targetSizePx, -kLargestHalf, kLargestHalf);
 }
 

@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
+
 #include "earthshine/error.hpp"
 #include "temp_folder.hpp"
 
@@ -53,10 +55,14 @@ TEST(OutputSet, WithoutCommitEverythingIsAsBefore) {
 TEST(OutputSet, DiscardAllRemovesWhatOpenSetsHold) {
     const TempFolder folder;
     OutputSet outputs;
-    outputs.addFile(folder / "a.txt");
+    const fs::path temporary = outputs.addFile(folder / "a.txt");
     outputs.addFolder(folder / "in", "mark");
     EXPECT_EQ(folder.names().size(), 2u);
+    writeText(temporary, "half");
     OutputSet::discardAll();
+    EXPECT_THAT(folder.names(), IsEmpty());
+    // Nor can a writer that had the path, and not opened it yet, make it anew.
+    EXPECT_FALSE(std::ofstream(temporary).is_open());
     EXPECT_THAT(folder.names(), IsEmpty());
     outputs.commit();
     EXPECT_THAT(folder.names(), IsEmpty());

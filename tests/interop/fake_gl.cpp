@@ -22,6 +22,7 @@ struct Memory {
     bool isDedicated = false;
     ::test::Imported memory;
     GLuint texture = 0;
+    float mark = 0.0f;  ///< that the texture bears as its border's colour: a later one of the same name has another
 };
 
 GlGetProcAddress find;
@@ -40,6 +41,14 @@ Function real(const char* name) {
 std::size_t extensionCount() {
     // One is left out on demand: the last.
     return std::size(kExtensions) - (environment("EARTHSHINE_LAYER_FAIL") == "glExtension" ? 1 : 0);
+}
+
+/// The border's colour of a texture, its first number.
+float markOf(GLuint texture) {
+    float color[4] = {};
+    const Bound bound(texture);
+    gl().getTexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, color);
+    return color[0];
 }
 
 void submit() {
@@ -89,8 +98,10 @@ void createMemoryObjects(GLsizei count, GLuint* names) {
 }
 void deleteMemoryObjects(GLsizei count, const GLuint* names) {
     for (GLsizei i = 0; i < count; ++i) {
-        const GLuint texture = memories[names[i]].texture;
-        if (texture != 0 && gl().isTexture(texture)) violation("a memory object is deleted before its texture");
+        const auto [texture, mark] = std::pair(memories[names[i]].texture, memories[names[i]].mark);
+        // Drivers give names of deleted textures out again, some at once.
+        if (texture != 0 && gl().isTexture(texture) && markOf(texture) == mark)
+            violation("a memory object is deleted before its texture");
         if (memories[names[i]].memory.object && !::test::letGo(memories[names[i]].memory))
             violation("a memory's descriptor was closed by another than OpenGL");
         if (memories.erase(names[i]) == 0) violation("a memory object is deleted that is none");
@@ -119,6 +130,9 @@ void texStorageMem2D(GLenum target, GLsizei levels, GLenum format, GLsizei width
     real<PFNGLGETINTEGERVPROC>("glGetIntegerv")(GL_TEXTURE_BINDING_2D, &texture);
     real<PFNGLTEXSTORAGE2DPROC>("glTexStorage2D")(target, levels, format, width, height);
     memories[name].texture = memories[name].memory.object->texture = GLuint(texture);
+    static float lastMark = 0.0f;
+    const float color[4] = {memories[name].mark = lastMark += 1.0f, 0.0f, 0.0f, 0.0f};
+    real<PFNGLTEXPARAMETERFVPROC>("glTexParameterfv")(target, GL_TEXTURE_BORDER_COLOR, color);
 }
 
 void genSemaphores(GLsizei count, GLuint* names) {

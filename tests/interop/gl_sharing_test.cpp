@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <GL/glcorearb.h>
+
 #include <cstdlib>
 #include <limits>
 #include <memory>
@@ -188,6 +190,43 @@ TEST_F(GlSharing, OpenGlHasDrawnBeforeOpenClReads) {
             EXPECT_THAT(calls, ElementsAre("finish"));
         EXPECT_EQ(run.opened.transport.cost().waitMs > 0.0, !*events);
     }
+}
+
+// A driver with GL_ARB_cl_event that takes no event of this context: asked once, and its error is nobody else's.
+TEST_F(GlSharing, EventsThatOpenGlRefusesAreWaitedFor) {
+    static int asked;
+    static GlGetProcAddress find;
+    asked = 0;
+    GlContextHandle refusing = context->handle();
+    find = refusing.getProcAddress;
+    refusing.getProcAddress = [](const char* name) -> void* {
+        const std::string function = name;
+        if (function == "glGetStringi")  // the last of its extensions is another
+            return reinterpret_cast<void*>(
+                static_cast<const unsigned char* (*)(unsigned, unsigned)>([](unsigned what, unsigned index) {
+                    int count = 0;
+                    reinterpret_cast<PFNGLGETINTEGERVPROC>(find("glGetIntegerv"))(GL_NUM_EXTENSIONS, &count);
+                    return what == GL_EXTENSIONS && int(index) == count - 1
+                               ? reinterpret_cast<const unsigned char*>("GL_ARB_cl_event")
+                               : reinterpret_cast<PFNGLGETSTRINGIPROC>(find("glGetStringi"))(what, index);
+                }));
+        if (function == "glCreateSyncFromCLeventARB")
+            return reinterpret_cast<void*>(
+                static_cast<void* (*)(cl_context, cl_event, unsigned)>([](cl_context, cl_event, unsigned) -> void* {
+                    ++asked;
+                    reinterpret_cast<PFNGLCLEARPROC>(find("glClear"))(1);  // no such bit: GL_INVALID_VALUE
+                    return nullptr;
+                }));
+        return find(name);
+    };
+    BoxRun host(*context, device(), {}, "host");
+    const auto expected = host.frame(kSmall, 0);
+    set("EVENTS", "1");
+    BoxRun run(*context, device(), {}, "gl-sharing", refusing);
+    test::expectSame(run.frame(kSmall, 0), expected);
+    run.frame(kSmall, 1);
+    EXPECT_EQ(asked, 1);
+    EXPECT_THAT(violationsOf(layerLines()), IsEmpty());
 }
 
 TEST_F(GlSharing, AnotherDeviceThanOpenGlsIsNamed) {

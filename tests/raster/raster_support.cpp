@@ -1,5 +1,6 @@
 #include "raster/raster_support.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
@@ -182,6 +183,12 @@ glm::vec4 rgba(const HostImage& image, int x, int y) {
 glm::dvec3 pixelRayVs(const Camera& camera, Extent extent, double x, double y) {
     const glm::dvec2 ndc(2.0 * x / extent.widthPx - 1.0, 1.0 - 2.0 * y / extent.heightPx);
     return {ndc.x / double(camera.clipFromView[0][0]), ndc.y / double(camera.clipFromView[1][1]), -1.0};
+}
+
+double subpixelShiftPx(GlContext& context) {
+    GLint bits = 0;
+    context.gl().GetIntegerv(GL_SUBPIXEL_BITS, &bits);
+    return std::ldexp(0.5, -bits);
 }
 
 glm::dvec2 projectPx(const Camera& camera, Extent extent, const glm::dvec3& positionWs) {

@@ -1,6 +1,7 @@
 #pragma once
 // Small scenes made by hand, and frames drawn and read back as 32-bit floats.
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -67,6 +68,28 @@ glm::vec4 rgba(const HostImage& image, int x, int y);
 
 /// The centre of pixel (x, y) in view space on the plane z = -1, from the projection alone, in double precision.
 glm::dvec3 pixelRayVs(const Camera& camera, Extent extent, double x, double y);
+
+/// How far, in px along x and along y, a driver may move a vertex onto its grid of 2^-GL_SUBPIXEL_BITS px before it
+/// interpolates: half a step. What is interpolated at a pixel's centre may then be what is true that far beside it.
+double subpixelShiftPx(GlContext& context);
+
+/// The smallest and the largest value of what(x, y) where a driver may look for the centre of pixel (x, y): there, and
+/// in the corners of what subpixelShiftPx() allows.
+struct Range {
+    double min, max;
+    /// By how much a value lies outside; 0 within.
+    double misses(double value) const { return std::max({min - value, value - max, 0.0}); }
+};
+template <class What>
+Range rangeAround(int x, int y, double shiftPx, What&& what) {
+    Range range{what(x + 0.5, y + 0.5), what(x + 0.5, y + 0.5)};
+    for (const double toX : {-shiftPx, shiftPx})
+        for (const double toY : {-shiftPx, shiftPx}) {
+            const double value = what(x + 0.5 + toX, y + 0.5 + toY);
+            range = {std::min(range.min, value), std::max(range.max, value)};
+        }
+    return range;
+}
 
 /// Where a point of the world falls in the picture, px from the top left corner, in double precision.
 glm::dvec2 projectPx(const Camera& camera, Extent extent, const glm::dvec3& positionWs);

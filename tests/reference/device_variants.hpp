@@ -24,7 +24,9 @@ inline void PrintTo(const Variant& variant, std::ostream* out) {
     *out << variant.name;
 }
 
-/// Devices whose platform or name holds the text of $EARTHSHINE_TEST_DEVICES, or all usable ones without it.
+/// Devices whose platform or name holds the text of $EARTHSHINE_TEST_DEVICES, or all usable ones without it. Of kernels
+/// of several lanes a GPU has those of 4 lanes and planes alone, unless $EARTHSHINE_TEST_EVERY_VARIANT is set: its
+/// compiler takes minutes for vectors that it does not run.
 std::vector<Variant> allVariants();
 
 /// Those of allVariants() that are quick to build: llvmpipe takes up to ten seconds a process for kernels of several

@@ -44,13 +44,25 @@ void expectSameSurfaces(const std::string& file, const std::string& cameraName, 
     const auto far = [](const glm::vec4& a, const glm::vec4& b, float tolerance) {
         return glm::length(glm::vec3(a) - glm::vec3(b)) > tolerance;
     };
+    // What a driver that rounds vertices to its grid may see beside the centre of a pixel: the step to a neighbour, the
+    // smaller of both, so that it is of the same surface, times the share of a pixel. On a floor seen from the side
+    // that is more than 24 bits. (All of the picture moved by as much has 0.127 of the atrium's pixels at other depths
+    // without this, 0.040 with it, and 0.023 unmoved.)
+    const double shiftPx = raster::test::subpixelShiftPx(sharedContext());
+    const auto depthAt = [&](int x, int y) {
+        return double(*depth.pixel(std::clamp(x, 0, extent.widthPx - 1), std::clamp(y, 0, extent.heightPx - 1)));
+    };
+    const auto isAtAnotherDepth = [&](int x, int y) {
+        const double here = depthAt(x, y);
+        const auto step = [&](int dx, int dy) {
+            return std::min(std::abs(depthAt(x - dx, y - dy) - here), std::abs(depthAt(x + dx, y + dy) - here));
+        };
+        const double moved = shiftPx * (step(1, 0) + step(0, 1));
+        return std::abs(double(*frame.depth.pixel(x, y)) - here) > 1e-4 * here + moved;
+    };
     // Pixels on edges may see either side; all others agree but for 24 bits of depth and 11 of colour. Mipmaps are
     // chosen from differences to neighbours, which GL takes over blocks of 2 x 2 pixels.
-    EXPECT_LE(
-        shareOf(frame, tracer,
-                [&](int x, int y) { return std::abs(*depth.pixel(x, y) / *frame.depth.pixel(x, y) - 1.0f) > 1e-4f; }),
-        edges)
-        << file;
+    EXPECT_LE(shareOf(frame, tracer, isAtAnotherDepth), edges) << file;
     EXPECT_LE(
         shareOf(frame, tracer, [&](int x, int y) { return far(rgba(albedo, x, y), rgba(frame.albedo, x, y), 0.02f); }),
         2 * edges)

@@ -39,8 +39,10 @@ typedef struct RowPixel {
 static int wayOf(int tap) { return tap < 2 ? tap - 2 : tap - 1; }
 static float shareOf(const AtrousParams* params, int way) { return abs(way) == 1 ? params->share1 : params->share2; }
 
-// The sum of the shares of those taps that lie in [0; size). Lanes lie at `first` and what follows; at first all, if count is 1.
+// The sum of the shares of those taps that lie in [0; size). Lanes lie at `first` and what follows; all at `first`, if count
+// is 1. 0 if nobody asks.
 static vfloat sharesInside(const AtrousParams* params, int first, int count, int size) {
+    if (!params->limitsLone) return 0.0f;
     int step = params->stepPx;
     vfloat sum = 2.0f * (params->share1 + params->share2);
     if (first >= 2 * step && first + count + 2 * step <= size) return sum;
@@ -53,12 +55,6 @@ static vfloat sharesInside(const AtrousParams* params, int first, int count, int
     return sum;
 }
 
-// fade lets the taps in; the pixel itself counts whole.
-static vfloat3 meanOf(const AtrousParams* params, vfloat fade, vfloat3 irradiance, vfloat3 sum, vfloat sumWeights) {
-    sum = mad3(fade, sum, scale3(params->share0, irradiance));
-    return scale3(vrecip(vmad(fade, sumWeights, params->share0)), sum);
-}
-
 static RowPixel unfiltered(const AtrousParams* params, Pixel px, ReadPixel read) {
     RowPixel r = {filterPoint(params, px, read.depth, read.normal, vrecip(max(read.length, 1.0f))), read.irradiance};
     return r;
@@ -66,68 +62,79 @@ static RowPixel unfiltered(const AtrousParams* params, Pixel px, ReadPixel read)
 
 static bool wantsTaps(const FilterPoint* p) { return anyLane((p->depth > 0.0f) & (p->fade > 0.0f)); }
 
-static vfloat3 filterRow(const AtrousParams* params, Pixel px, int width, const RowPixel* row, vfloat length,
-                         const RowTaps* taps) {
-    const FilterPoint* p = &row->point;
-    vfloat slopeX = growth(p, params->cameraRays.rayDx), offsetX = growth(p, params->cameraRays.originDx);
-    vfloat offset = -p->depth * p->slope, sumWeights = 0.0f;
-    vfloat3 sum = make3(0.0f, 0.0f, 0.0f), mean = row->irradiance;
-#pragma unroll
-    for (int tap = 0; tap < 4; ++tap) {
-        int i = wayOf(tap);
-        vfloat near = nearness(params, p, vmad(slopeX, i, p->slope), vmad(offsetX, i, offset),
-                               1.0f / (float)(i * i), taps->depths[tap], taps->normals[tap]);
-        vfloat weight = shareOf(params, i) * near * near;
-        sumWeights += weight;
-        sum = mad3(weight, taps->irradiances[tap], sum);
-    }
-    if (params->limitsLone) {
-        vfloat luminances = 0.0f, count = 0.0f;
-#pragma unroll
-        for (int tap = 0; tap < 4; ++tap) {
-            vmask isThere = taps->depths[tap] > 0.0f;
-            luminances += vselect(isThere, luminance(taps->irradiances[tap]), 0.0f);
-            count += vselect(isThere, 1.0f, 0.0f);
-        }
-        vfloat shares = sharesInside(params, px.x, LANES, width);
-        mean = limitedAlone(mean, length, p->fade, sumWeights, shares, luminances, count);
-    }
-    return meanOf(params, p->fade, mean, sum, sumWeights);
+// A row or a column through a pixel: its slope and offset, what they grow by from tap to tap, and sums over the taps.
+typedef struct Line {
+    vfloat slope, slopeStep, offset, offsetStep, sumWeights, luminances, count;
+    vfloat3 sum;
+} Line;
+
+static Line lineThrough(const FilterPoint* p, f32x4 rayStep, f32x4 originStep) {
+    vfloat zero = 0.0f;
+    Line line = {p->slope, growth(p, rayStep), -p->depth * p->slope, growth(p, originStep), zero, zero, zero,
+                 make3(zero, zero, zero)};
+    return line;
 }
 
-// Of the third of five rows, a step apart. y of `height` is its row; length: read only if limitsLone.
+static void addTap(Line* line, const AtrousParams* params, const FilterPoint* p, int way, vfloat depth, vfloat3 normal,
+                   vfloat3 irradiance) {
+    vfloat near = nearness(params, p, vmad(line->slopeStep, way, line->slope), vmad(line->offsetStep, way, line->offset),
+                           1.0f / (float)(way * way), depth, normal);
+    vfloat weight = shareOf(params, way) * near * near;
+    line->sumWeights += weight;
+    line->sum = mad3(weight, irradiance, line->sum);
+}
+
+// What a lone pixel's limit wants of a tap; if limitsLone, in a loop of its own: no branch parts the taps' arithmetic.
+static void addLuminance(Line* line, vfloat depth, vfloat3 irradiance) {
+    line->luminances += vselect(depth > 0.0f, luminance(irradiance), 0.0f);
+    line->count += vselect(depth > 0.0f, 1.0f, 0.0f);
+}
+
+// The pixel and its taps. shares (sharesInside) and length: read only if limitsLone.
+static vfloat3 meanOf(const Line* line, const AtrousParams* params, vfloat fade, vfloat3 irradiance, vfloat shares,
+                      vfloat length) {
+    if (params->limitsLone)
+        irradiance = limitedAlone(irradiance, length, fade, line->sumWeights, shares, line->luminances, line->count);
+    // fade lets the taps in; the pixel itself counts whole.
+    vfloat3 sum = mad3(fade, line->sum, scale3(params->share0, irradiance));
+    return scale3(vrecip(vmad(fade, line->sumWeights, params->share0)), sum);
+}
+
+static vfloat3 filterRow(const AtrousParams* params, Pixel px, int width, const RowPixel* row, vfloat length,
+                         const RowTaps* taps) {
+    Line line = lineThrough(&row->point, params->cameraRays.rayDx, params->cameraRays.originDx);
+#pragma unroll
+    for (int tap = 0; tap < 4; ++tap)
+        addTap(&line, params, &row->point, wayOf(tap), taps->depths[tap], taps->normals[tap], taps->irradiances[tap]);
+    if (params->limitsLone) {
+#pragma unroll
+        for (int tap = 0; tap < 4; ++tap) addLuminance(&line, taps->depths[tap], taps->irradiances[tap]);
+    }
+    vfloat shares = sharesInside(params, px.x, LANES, width);
+    return meanOf(&line, params, row->point.fade, row->irradiance, shares, length);
+}
+
+// Of the third of five rows, a step apart. y of `height` is its row.
 static vfloat3 filterColumn(const AtrousParams* params, const RowPixel* above2, const RowPixel* above,
                             const RowPixel* row, const RowPixel* below, const RowPixel* below2, int y, int height,
                             vfloat length) {
-    const FilterPoint* p = &row->point;
     const RowPixel* taps[4] = {above2, above, below, below2};
-    vfloat slopeY = growth(p, params->cameraRays.rayDy), offsetY = growth(p, params->cameraRays.originDy);
-    vfloat offset = -p->depth * p->slope, sumWeights = 0.0f;
-    vfloat3 sum = make3(0.0f, 0.0f, 0.0f), mean = row->irradiance;
-    if (!wantsTaps(p)) return select3(p->depth > 0.0f, mean, sum);
-#pragma unroll
-    for (int tap = 0; tap < 4; ++tap) {
-        int j = wayOf(tap);
-        const RowPixel* q = taps[tap];
-        vfloat near = nearness(params, p, vmad(slopeY, j, p->slope), vmad(offsetY, j, offset), 1.0f / (float)(j * j),
-                               q->point.depth, q->point.normal);
-        vfloat weight = shareOf(params, j) * near * near;
-        sumWeights += weight;
-        sum = mad3(weight, q->irradiance, sum);
-    }
-    if (params->limitsLone) {
-        vfloat luminances = 0.0f, count = 0.0f;
+    vfloat3 mean = row->irradiance;
+    if (wantsTaps(&row->point)) {
+        Line line = lineThrough(&row->point, params->cameraRays.rayDy, params->cameraRays.originDy);
 #pragma unroll
         for (int tap = 0; tap < 4; ++tap) {
-            vmask isThere = taps[tap]->point.depth > 0.0f;
-            luminances += vselect(isThere, luminance(taps[tap]->irradiance), 0.0f);
-            count += vselect(isThere, 1.0f, 0.0f);
+            const RowPixel* q = taps[tap];
+            addTap(&line, params, &row->point, wayOf(tap), q->point.depth, q->point.normal, q->irradiance);
+        }
+        if (params->limitsLone) {
+#pragma unroll
+            for (int tap = 0; tap < 4; ++tap) addLuminance(&line, taps[tap]->point.depth, taps[tap]->irradiance);
         }
         vfloat shares = sharesInside(params, y, 1, height);
-        mean = limitedAlone(mean, length, p->fade, sumWeights, shares, luminances, count);
+        mean = meanOf(&line, params, row->point.fade, mean, shares, length);
     }
-    mean = meanOf(params, p->fade, mean, sum, sumWeights);
-    return select3(p->depth > 0.0f, mean, make3(0.0f, 0.0f, 0.0f));
+    return select3(row->point.depth > 0.0f, mean, make3(0.0f, 0.0f, 0.0f));
 }
 
 #if LANES == 1

@@ -58,12 +58,11 @@ void AtrousStage::enqueue(const Images& images, const AtrousParams& params) {
 
 void AtrousStage::enqueuePair(const Images& images, const AtrousParams& params) {
     if (!canPair(params))
-        throw DeviceError(
-            fmt::format("atrous_pair: filters by planes alone, with one lane at steps of up to {} px (asked for: {}) "
-                        "in groups of {} "
-                        "items with {} bytes of local memory (this device: {}, {})",
-                        ATROUS_PAIR_MOST_STEP, params.stepPx, ATROUS_PAIR_GROUP(1), ATROUS_PAIR_LOCAL_BYTES,
-                        device_.caps().maxWorkGroupSize, device_.caps().localMemoryBytes));
+        throw DeviceError(fmt::format(
+            "atrous_pair: by planes alone; with one lane, steps of up to {} px (not {}), groups of {} items "
+            "and {} bytes of local memory (here {}, {})",
+            ATROUS_PAIR_MOST_STEP, params.stepPx, ATROUS_PAIR_GROUP(1), ATROUS_PAIR_LOCAL_BYTES,
+            device_.caps().maxWorkGroupSize, device_.caps().localMemoryBytes));
     const Extent extent = images.outIrradiance.extent();
     const int rows = dividedUp(extent.heightPx, params.stepPx);  // of each remainder of the step
     const int pieces = std::max(rows / wantedRows(extent), 1);

@@ -6,22 +6,17 @@
 #include <GL/glcorearb.h>
 
 #include <cstdlib>
-#include <limits>
 #include <memory>
 #include <optional>
-#include <sstream>
 
 #include "cli/process.hpp"
-#include "image/temp_folder.hpp"
+#include "interop/gl_sharing_fixture.hpp"
 #include "interop/gl_sharing_transport.hpp"
-#include "interop/interop_support.hpp"
-#include "reference/device_variants.hpp"
 #include "support/surface_pixels.hpp"
 
 namespace earthshine {
 namespace {
 
-using raster::GlContext;
 using test::BoxRun;
 using test::deviceErrorOf;
 using ::testing::AllOf;
@@ -31,49 +26,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::StartsWith;
-
-// Before anything asks OpenCL for its platforms: the loader looks once.
-const bool kHasLayer = ::setenv("OPENCL_LAYERS", EARTHSHINE_GL_SHARING_LAYER, 1) == 0;
-
-/// What the layer wrote.
-std::vector<std::string> linesOf(const std::filesystem::path& path) {
-    std::istringstream stream(test::readText(path));
-    std::vector<std::string> lines;
-    for (std::string line; std::getline(stream, line);) lines.push_back(line);
-    return lines;
-}
-std::ptrdiff_t countOf(const std::vector<std::string>& lines, const std::string& start) {
-    return std::count_if(lines.begin(), lines.end(), [&](const std::string& line) { return line.starts_with(start); });
-}
-std::vector<std::string> violationsOf(const std::vector<std::string>& lines) {
-    std::vector<std::string> some;
-    for (const std::string& line : lines)
-        if (line.starts_with("violation")) some.push_back(line);
-    return some;
-}
-
-class GlSharing : public ::testing::Test {
-protected:
-    GlSharing() {
-        EXPECT_TRUE(kHasLayer);
-        set("LOG", (folder / "layer.log").string());
-        for (const char* name : {"EVENTS", "FAIL", "DEVICE"}) set(name, "");
-        context = raster::createContext(raster::test::testedKind());
-    }
-    ~GlSharing() override {
-        context.reset();
-        set("LOG", "");
-    }
-    static void set(const std::string& name, const std::string& value) {
-        ::setenv(("EARTHSHINE_LAYER_" + name).c_str(), value.c_str(), 1);
-    }
-    std::vector<std::string> layerLines() const { return linesOf(folder / "layer.log"); }
-
-    static DeviceCaps device() { return reference::defaultVariants().at(0).caps; }
-
-    test::TempFolder folder;
-    std::unique_ptr<GlContext> context;
-};
 
 constexpr Extent kSmall{61, 35}, kLarge{96, 40};
 
@@ -304,145 +256,6 @@ TEST_F(GlSharing, WhatFailsTheRoundTripIsNotChosen) {
     const GlDevice chosen = openForGl(device(), {}, context->handle());
     EXPECT_EQ(chosen.transport.kind(), TransportKind::Host);
     EXPECT_THAT(chosen.transport.reason(), HasSubstr("gl-sharing: releasing textures: "));
-}
-
-/// The layer itself: broken on purpose, each rule is noticed.
-class GlSharingRules : public GlSharing {
-protected:
-    GlSharingRules()
-        : opened(openWithGlSharing(Device(device()), {}, context->handle())),
-          shared(std::make_unique<GlSharingTransport>(opened, context->handle())) {
-        const raster::GlFunctions& gl = context->gl();
-        gl.GenTextures(1, &texture.name);
-        gl.BindTexture(GL_TEXTURE_2D, texture.name);
-        gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
-        upload(1.0f);
-        both = shared->image(texture);
-        image = both.image;
-    }
-    void upload(float value) const {
-        const std::vector<float> pixels(4 * 4 * 4, value);
-        context->gl().BindTexture(GL_TEXTURE_2D, texture.name);
-        context->gl().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, 4, 4, 0, GL_RGBA, GL_FLOAT, pixels.data());
-    }
-    float read() const {
-        std::vector<float> pixels(4 * 4 * 4);
-        opened.impl().queue.enqueueReadImage(image, CL_TRUE, {0, 0, 0}, {4, 4, 1}, 0, 0, pixels.data());
-        return pixels[5];
-    }
-    void expectViolation(const std::string& words) const {
-        const auto lines = violationsOf(layerLines());
-        ASSERT_EQ(lines.size(), 1u);
-        EXPECT_THAT(lines[0], HasSubstr(words));
-    }
-
-    Device opened;
-    std::unique_ptr<GlSharingTransport> shared;
-    GlTexture texture{0, PixelFormat::RGBA32F, {4, 4}};
-    SharedImage both;
-    cl::Image2D image;  ///< of both
-    TransportCost cost;
-};
-
-TEST_F(GlSharingRules, KeptTheyGiveThePixels) {
-    shared->acquire({both}, cost);
-    EXPECT_EQ(read(), 1.0f);
-    shared->release({both}, cost);
-    upload(2.0f);
-    shared->acquire({both}, cost);
-    EXPECT_EQ(read(), 2.0f);
-    shared->release({both}, cost);
-    EXPECT_THAT(violationsOf(layerLines()), IsEmpty());
-}
-TEST_F(GlSharingRules, WhatIsNotFiniteStopsAtTheDoor) {
-    // The rule of unpack.cl holds for shared textures, too.
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    std::vector<float> pixels(4 * 4 * 4, 0.25f);
-    pixels[0] = std::numeric_limits<float>::quiet_NaN();
-    pixels[1] = kInfinity;
-    pixels[2] = -kInfinity;
-    pixels[4] = 1e20f;
-    pixels[5] = -1e20f;
-    pixels[6] = -1e15f;
-    context->gl().BindTexture(GL_TEXTURE_2D, texture.name);
-    context->gl().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, 4, 4, 0, GL_RGBA, GL_FLOAT, pixels.data());
-    for (const char* storage : {"image", "planar", "packed"}) {
-        DeviceOptions options;
-        options.storage = storage;
-        const Device sharing = openWithGlSharing(Device(device()), options, context->handle());
-        GlSharingTransport transport(sharing, context->handle());
-        const SharedImage image3 = transport.image(texture);
-        ImportImageStage import(sharing);
-        const Surface surface(sharing, PixelFormat::RGBA32F, {4, 4});
-        transport.acquire({image3}, cost);
-        import.enqueue(image3.image, surface);
-        transport.release({image3}, cost);
-        const HostImage arrived = test::readSurface(sharing, surface);
-        const float* p = arrived.pixel(0, 0);
-        EXPECT_THAT(std::vector<float>(p, p + 4), ElementsAre(0, 0, 0, 1)) << storage;
-        const float rounding = 1e15f * (storage == std::string("packed") ? 0x1p-13f : 0.0f);
-        EXPECT_NEAR(p[4], 1e15f, rounding) << storage;
-        EXPECT_NEAR(p[5], -1e15f, rounding) << storage;
-        EXPECT_NEAR(p[6], -1e15f, rounding) << storage;
-        EXPECT_EQ(p[8], 0.25f);
-    }
-    EXPECT_THAT(violationsOf(layerLines()), IsEmpty());
-}
-TEST_F(GlSharingRules, UseBeforeAcquire) {
-    EXPECT_THROW(read(), cl::Error);
-    expectViolation("reading of texture");
-}
-TEST_F(GlSharingRules, KernelAfterRelease) {
-    shared->acquire({both}, cost);
-    ImportImageStage import(opened);
-    const Surface surface(opened, PixelFormat::RGBA32F, {4, 4});
-    import.enqueue(image, surface);
-    shared->release({both}, cost);
-    EXPECT_THAT(deviceErrorOf([&] { import.enqueue(image, surface); }), HasSubstr("import_image: launching"));
-    expectViolation("a kernel's use of texture");
-}
-TEST_F(GlSharingRules, DrawingWhileAcquired) {
-    shared->acquire({both}, cost);
-    upload(2.0f);
-    deviceErrorOf([&] { shared->release({both}, cost); });
-    expectViolation("GL touched texture");
-}
-TEST_F(GlSharingRules, AcquireTwice) {
-    shared->acquire({both}, cost);
-    deviceErrorOf([&] { shared->acquire({both}, cost); });
-    expectViolation("which is acquired already");
-}
-TEST_F(GlSharingRules, ReleaseTwice) {
-    shared->acquire({both}, cost);
-    shared->release({both}, cost);
-    deviceErrorOf([&] { shared->release({both}, cost); });
-    expectViolation("which is not acquired");
-}
-TEST_F(GlSharingRules, AnotherGlContext) {
-    const auto other = raster::createContext(raster::test::testedKind());
-    deviceErrorOf([&] { shared->acquire({both}, cost); });
-    context->makeCurrent();
-    expectViolation("acquire without its GL context");
-}
-TEST_F(GlSharingRules, LettingGoWhileAcquired) {
-    shared->acquire({both}, cost);
-    shared->forget(texture.name);
-    image = {};
-    both = {};
-    expectViolation("is let go while it is acquired");
-}
-TEST_F(GlSharingRules, DeletingATextureBeforeItsImage) {
-    context->gl().DeleteTextures(1, &texture.name);
-    shared->forget(texture.name);
-    image = {};
-    both = {};
-    expectViolation("was deleted before its image");
-}
-TEST_F(GlSharingRules, AnotherQueue) {
-    const Device other = openWithGlSharing(Device(device()), {}, context->handle());
-    const std::vector<cl::Memory> objects{image};
-    EXPECT_THROW(other.impl().queue.enqueueAcquireGLObjects(&objects), cl::Error);
-    expectViolation("in a queue of another context");
 }
 
 /// The whole program.

@@ -44,6 +44,11 @@ Surface::Surface(const Device& device, PixelFormat format, Extent extent) : form
             return buffer;
         });
     } else {
+        // Asked here: NVIDIA's driver (580.159) makes images wider than it says it can.
+        const auto& most = impl.caps.maxImageSizePx;
+        if (std::size_t(extent.widthPx) > most[0] || std::size_t(extent.heightPx) > most[1])
+            throw DeviceError(
+                fmt::format("{}: {} takes images of up to {} x {}", what, impl.caps.name, most[0], most[1]));
         sizeBytes_ = bytesPerPixel(format) * std::size_t(extent.widthPx) * std::size_t(extent.heightPx);
         memory_ = impl.checked(what, [&] {
             return cl::Image2D(impl.context, CL_MEM_READ_WRITE, clImageFormat(format), std::size_t(extent.widthPx),

@@ -61,7 +61,7 @@ cl_int CL_API_CALL getDeviceInfo(cl_device_id device, cl_device_info name, std::
     return extensionsWith(target,
                           "cl_khr_device_uuid cl_khr_external_memory cl_khr_external_memory_opaque_fd"
                           " cl_khr_semaphore cl_khr_external_semaphore cl_khr_external_semaphore_opaque_fd",
-                          "cl_khr_gl_", device, size, value, sizeOut);
+                          {"cl_khr_gl_"}, device, size, value, sizeOut);
 }
 
 cl_mem CL_API_CALL createImageWithProperties(cl_context context, const cl_mem_properties* properties,

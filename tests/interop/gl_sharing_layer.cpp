@@ -88,7 +88,7 @@ cl_int CL_API_CALL getDeviceInfo(cl_device_id device, cl_device_info name, std::
     if (name != CL_DEVICE_EXTENSIONS) return target.clGetDeviceInfo(device, name, size, value, sizeOut);
     std::string more = "cl_khr_gl_sharing";
     if (environment("EARTHSHINE_LAYER_EVENTS") == "1") more += " cl_khr_gl_event";
-    return extensionsWith(target, more, "cl_khr_external_", device, size, value, sizeOut);
+    return extensionsWith(target, more, {"cl_khr_gl_", "cl_khr_external_"}, device, size, value, sizeOut);
 }
 
 /// Takes the sharing properties out.

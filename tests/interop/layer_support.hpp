@@ -13,13 +13,16 @@
 #include <GL/glcorearb.h>
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <initializer_list>
 #include <map>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -108,9 +111,11 @@ private:
     GLint texture_ = 0, pack_ = 0, unpack_ = 0;
 };
 
-/// Its device's extensions, and more; not those that start with `hidden`: what the other transport would open with.
-inline cl_int extensionsWith(const cl_icd_dispatch& target, const std::string& more, const std::string& hidden,
-                             cl_device_id device, std::size_t size, void* value, std::size_t* sizeOut) {
+/// Its device's extensions, and more; not those that start with one of `hidden`: the driver's own of this
+/// kind, and what the other transport would open with.
+inline cl_int extensionsWith(const cl_icd_dispatch& target, const std::string& more,
+                             std::initializer_list<std::string_view> hidden, cl_device_id device, std::size_t size,
+                             void* value, std::size_t* sizeOut) {
     std::size_t bytes = 0;
     if (const cl_int code = target.clGetDeviceInfo(device, CL_DEVICE_EXTENSIONS, 0, nullptr, &bytes);
         code != CL_SUCCESS)
@@ -119,7 +124,7 @@ inline cl_int extensionsWith(const cl_icd_dispatch& target, const std::string& m
     target.clGetDeviceInfo(device, CL_DEVICE_EXTENSIONS, bytes, theirs.data(), nullptr);
     std::istringstream words(theirs.c_str());
     for (std::string word; words >> word;)
-        if (!word.starts_with(hidden)) text += word + " ";
+        if (std::ranges::none_of(hidden, [&](std::string_view h) { return word.starts_with(h); })) text += word + " ";
     text += more;
     if (sizeOut) *sizeOut = text.size() + 1;
     if (value && size < text.size() + 1) return CL_INVALID_VALUE;

@@ -171,7 +171,7 @@ constexpr Mutation kTexels[] = {
 
 constexpr Mutation kOtherStages[] = {
     {"normals half as long", "common/rsm_record.clh", "inside, 32767.0f", "inside, 16383.0f"},
-    {"radius twice", "common/rsm_record.clh", "* 0x1p-112f", "* 0x1p-111f"},
+    {"radius twice", "common/rsm_record.clh", "(112u << 23)", "(111u << 23)"},
     {"flux in another channel's place", "common/rsm_record.clh", "positionWs.z, flux.x,", "positionWs.z, radius,"},
     {"minified flux of one texel", "rsm_minify.cl", "flux = add3(flux, f);", "flux = f;"},
     {"minified flux of one row", "rsm_minify.cl", "int rows = min(params.minify, ", "int rows = min(1, "},

@@ -14,6 +14,10 @@
 
 #include "atrous.clh"
 
+#ifndef LIMITS_LONE
+#define LIMITS_LONE 1  // params.limitsLone, which the host compiles in
+#endif
+
 // A pixel as it was read; depth NaN: there is none.
 typedef struct ReadPixel {
     vfloat3 irradiance, normal;
@@ -42,7 +46,7 @@ static float shareOf(const AtrousParams* params, int way) { return abs(way) == 1
 // The sum of the shares of those taps that lie in [0; size). Lanes lie at `first` and what follows; all at `first`, if count
 // is 1. 0 if nobody asks.
 static vfloat sharesInside(const AtrousParams* params, int first, int count, int size) {
-    if (!params->limitsLone) return 0.0f;
+    if (!LIMITS_LONE) return 0.0f;
     int step = params->stepPx;
     vfloat sum = 2.0f * (params->share1 + params->share2);
     if (first >= 2 * step && first + count + 2 * step <= size) return sum;
@@ -84,16 +88,16 @@ static void addTap(Line* line, const AtrousParams* params, const FilterPoint* p,
     line->sum = mad3(weight, irradiance, line->sum);
 }
 
-// What a lone pixel's limit wants of a tap; if limitsLone, in a loop of its own: no branch parts the taps' arithmetic.
+// What a lone pixel's limit wants of a tap; if LIMITS_LONE, in a loop of its own: no branch parts the taps' arithmetic.
 static void addLuminance(Line* line, vfloat depth, vfloat3 irradiance) {
     line->luminances += vselect(depth > 0.0f, luminance(irradiance), 0.0f);
     line->count += vselect(depth > 0.0f, 1.0f, 0.0f);
 }
 
-// The pixel and its taps. shares (sharesInside) and length: read only if limitsLone.
+// The pixel and its taps. shares (sharesInside) and length: read only if LIMITS_LONE.
 static vfloat3 meanOf(const Line* line, const AtrousParams* params, vfloat fade, vfloat3 irradiance, vfloat shares,
                       vfloat length) {
-    if (params->limitsLone)
+    if (LIMITS_LONE)
         irradiance = limitedAlone(irradiance, length, fade, line->sumWeights, shares, line->luminances, line->count);
     // fade lets the taps in; the pixel itself counts whole.
     vfloat3 sum = mad3(fade, line->sum, scale3(params->share0, irradiance));
@@ -106,7 +110,7 @@ static vfloat3 filterRow(const AtrousParams* params, Pixel px, int width, const 
 #pragma unroll
     for (int tap = 0; tap < 4; ++tap)
         addTap(&line, params, &row->point, wayOf(tap), taps->depths[tap], taps->normals[tap], taps->irradiances[tap]);
-    if (params->limitsLone) {
+    if (LIMITS_LONE) {
 #pragma unroll
         for (int tap = 0; tap < 4; ++tap) addLuminance(&line, taps->depths[tap], taps->irradiances[tap]);
     }
@@ -127,7 +131,7 @@ static vfloat3 filterColumn(const AtrousParams* params, const RowPixel* above2, 
             const RowPixel* q = taps[tap];
             addTap(&line, params, &row->point, wayOf(tap), q->point.depth, q->point.normal, q->irradiance);
         }
-        if (params->limitsLone) {
+        if (LIMITS_LONE) {
 #pragma unroll
             for (int tap = 0; tap < 4; ++tap) addLuminance(&line, taps[tap]->point.depth, taps[tap]->irradiance);
         }
@@ -213,7 +217,7 @@ static void walkColumns(INPUTS_IN, SURFACE_IN(inLength), SURFACE_OUT(outIrradian
         }
         if (row < 2 || x >= width || out.y >= height) continue;
         vfloat length = 0.0f;
-        if (params->limitsLone) length = load1(inLength, out);
+        if (LIMITS_LONE) length = load1(inLength, out);
         store3(outIrradiance, out, filterColumn(params, &row0, &row1, &row2, &row3, &row4, out.y, height, length));
     }
 }
@@ -272,7 +276,7 @@ static void walkStrip(INPUTS_IN, SURFACE_IN(inLength), SURFACE_OUT(outIrradiance
         px.y -= 2 * step;
         for (int k = 0; k < ATROUS_PAIR_STRIP(LANES) && px.x < width; ++k, px.x += LANES) {
             vfloat length = 0.0f;
-            if (params->limitsLone) length = load1(inLength, px);
+            if (LIMITS_LONE) length = load1(inLength, px);
             store3(outIrradiance, px,
                    filterColumn(params, &rows[(row + 1) % 5][k], &rows[(row + 2) % 5][k], &rows[(row + 3) % 5][k],
                                 &rows[(row + 4) % 5][k], &rows[row % 5][k], px.y, height, length));

@@ -63,17 +63,17 @@ static vfloat inverseThreeQuarters(vfloat x) {
 }
 
 // How densely a disk's points lie at a distance from its centre, times a factor that all distances share.
-static vfloat diskDensity(int mapping, float radius, vfloat r2) {
+static vfloat diskDensity(float radius, vfloat r2) {
     vfloat density = 1.0f;
     r2 = max(r2, 1e-12f);  // finite at the centre
-    if (mapping == MAPPING_POLAR) density = rsqrt(r2);
-    if (mapping == MAPPING_SQUARED) density = inverseThreeQuarters(r2);
+    if (MAPPING == MAPPING_POLAR) density = rsqrt(r2);
+    if (MAPPING == MAPPING_SQUARED) density = inverseThreeQuarters(r2);
     return vselect(r2 < radius * radius, density, 0.0f);
 }
 // One over that factor: the integral over the disk.
-static float diskIntegral(int mapping, float radius) {
-    if (mapping == MAPPING_AREA) return ES_PI * radius * radius;
-    return mapping == MAPPING_POLAR ? 2.0f * ES_PI * radius : 4.0f * ES_PI * sqrt(radius);
+static float diskIntegral(float radius) {
+    if (MAPPING == MAPPING_AREA) return ES_PI * radius * radius;
+    return MAPPING == MAPPING_POLAR ? 2.0f * ES_PI * radius : 4.0f * ES_PI * sqrt(radius);
 }
 
 __kernel void rsm_choose(SURFACE_IN(inDepth), __global const LightParams* restrict lights,
@@ -100,7 +100,7 @@ __kernel void rsm_choose(SURFACE_IN(inDepth), __global const LightParams* restri
         vfloat cx[SET_PX], cy[SET_PX];
         for (int i = 0; i < SET_PX; ++i) diskCentre(&params.gather, &light, points.positionWs[i], &cx[i], &cy[i]);
         float radius = (light.gatherRadiusUv > 0.0f ? light.gatherRadiusUv : params.gather.radiusUv) * (float)size;
-        float scale = light.indirectScale * ES_INV_PI * (float)SET_PX * diskIntegral(params.gather.mapping, radius) /
+        float scale = light.indirectScale * ES_INV_PI * (float)SET_PX * diskIntegral(radius) /
                       (float)sampleCount;
         __global RsmChoice* out = outChoices + ((l * params.rowCount + row) * setsInRow + firstSet) * sampleCount;
         for (int s = 0; s < sampleCount; ++s) {
@@ -114,7 +114,7 @@ __kernel void rsm_choose(SURFACE_IN(inDepth), __global const LightParams* restri
             vfloat density = 0.0f;
             for (int i = 0; i < SET_PX; ++i) {
                 vfloat dx = fx - cx[i], dy = fy - cy[i];
-                density += diskDensity(params.gather.mapping, radius, vmad(dx, dx, dy * dy));
+                density += diskDensity(radius, vmad(dx, dx, dy * dy));
             }
             VintLanes texel;
             VfloatLanes weight;

@@ -32,26 +32,25 @@ __kernel void rsm_gather(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm
     vfloat3 irradiance = make3(0.0f, 0.0f, 0.0f);
     vfloat depth = load1(inDepth, px);
     vmask isSurface = depth > 0.0f;
-    if (!anyLane(isSurface)) {
-        store3(outIrradiance, px, irradiance);
-        return;
-    }
-    vfloat3 normalWs = load3(inNormalWs, px);
-    vfloat3 positionWs = positionFromDepth(&params.cameraRays, px.x + laneIndex(), (vint)(px.y), depth);
+    if (anyLane(isSurface)) {
+        vfloat3 normalWs = load3(inNormalWs, px);
+        vfloat3 positionWs = positionFromDepth(&params.cameraRays, px.x + laneIndex(), (vint)(px.y), depth);
 
-    vfloat shift = 0.5f / (float)params.sampleCount, cosOwn = 1.0f, sinOwn = 0.0f;
-    if (params.rotation == ROTATION_NOISE) {
-        __global const float* from = noise + (px.y % ROTATION_NOISE_SIZE_PX) * ROTATION_NOISE_SIZE_PX +
-                                     px.x % ROTATION_NOISE_SIZE_PX;
-        shift = *(__global const vfloat*)from;
-        cosOwn = *(__global const vfloat*)(from + ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX);
-        sinOwn = *(__global const vfloat*)(from + 2 * ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX);
-    } else if (params.rotation == ROTATION_TILE) {
-        vfloat turn = tileTurn(px.x + laneIndex(), (vint)(px.y));
-        cosOwn = es_cosTau(turn);
-        sinOwn = es_sinTau(turn);
+        vfloat shift = 0.5f / (float)params.sampleCount, cosOwn = 1.0f, sinOwn = 0.0f;
+        if (ROTATION == ROTATION_NOISE) {
+            __global const float* from = noise + (px.y % ROTATION_NOISE_SIZE_PX) * ROTATION_NOISE_SIZE_PX +
+                                         px.x % ROTATION_NOISE_SIZE_PX;
+            shift = *(__global const vfloat*)from;
+            cosOwn = *(__global const vfloat*)(from + ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX);
+            sinOwn = *(__global const vfloat*)(from + 2 * ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX);
+        } else if (ROTATION == ROTATION_TILE) {
+            vfloat turn = tileTurn(px.x + laneIndex(), (vint)(px.y));
+            cosOwn = es_cosTau(turn);
+            sinOwn = es_sinTau(turn);
+        }
+        irradiance = diskIrradiance(RSM_ARG(rsm), lights, pattern, &params,
+                                    patternMove(&params, shift, cosOwn, sinOwn), positionWs, normalWs);
+        irradiance = select3(isSurface, irradiance, make3(0.0f, 0.0f, 0.0f));
     }
-    irradiance = diskIrradiance(RSM_ARG(rsm), lights, pattern, &params,
-                                patternMove(&params, shift, cosOwn, sinOwn), positionWs, normalWs);
-    store3(outIrradiance, px, select3(isSurface, irradiance, make3(0.0f, 0.0f, 0.0f)));
+    store3(outIrradiance, px, irradiance);
 }

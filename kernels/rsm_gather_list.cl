@@ -26,7 +26,7 @@ __kernel void rsm_gather_list(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_I
     shift.v = 0.5f / (float)params.sampleCount;
     cosOwn.v = 1.0f;
     sinOwn.v = 0.0f;
-    if (params.rotation == ROTATION_NOISE) {
+    if (ROTATION == ROTATION_NOISE) {
         VintLanes texel;
         texel.v = y % ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX + x % ROTATION_NOISE_SIZE_PX;
         for (int i = 0; i < LANES; ++i) {
@@ -35,7 +35,7 @@ __kernel void rsm_gather_list(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_I
             cosOwn.lane[i] = from[ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX];
             sinOwn.lane[i] = from[2 * ROTATION_NOISE_SIZE_PX * ROTATION_NOISE_SIZE_PX];
         }
-    } else if (params.rotation == ROTATION_TILE) {
+    } else if (ROTATION == ROTATION_TILE) {
         vfloat turn = tileTurn(x, y);
         cosOwn.v = es_cosTau(turn);
         sinOwn.v = es_sinTau(turn);

@@ -24,8 +24,27 @@ std::string buildOptions(const DeviceCaps& caps, const Tuning& tuning) {
 
 }  // namespace
 
+std::string Kernel::definitions() const {
+    std::string options;
+    for (const auto& [name, value] : defined_) options += fmt::format(" -D{}={}", name, value);
+    return options;
+}
+
+Kernel& Kernel::define(std::string_view name, int value) {
+    const auto at = defined_.find(name);
+    if (at != defined_.end() && at->second == value) return *this;
+    defined_.insert_or_assign(std::string(name), value);
+    built_ = nullptr;
+    return *this;
+}
+
 void Kernel::build() {
-    if (kernel_()) return;
+    if (built_) return;
+    const std::string options = definitions();
+    if (const auto at = variants_.find(options); at != variants_.end()) {
+        built_ = &at->second;
+        return;
+    }
     Device::Impl& impl = device_.impl();
     const std::string& folder = impl.options.kernelFolder;
     const std::string source =
@@ -33,23 +52,22 @@ void Kernel::build() {
     arguments_ = argumentNames(source, name_, impl.tuning.rsmRecords);
     impl.checked(name_ + ": building", [&] {
         const cl::Program program = buildProgram(impl.context, impl.device, name_, source,
-                                                 buildOptions(impl.caps, impl.tuning), impl.cacheFolder);
-        const cl::Kernel kernel(program, name_.c_str());
-        const auto limit = kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(impl.device);
-        const auto own = kernel.getWorkGroupInfo<CL_KERNEL_COMPILE_WORK_GROUP_SIZE>(impl.device);  // 0: any
+                                                 buildOptions(impl.caps, impl.tuning) + options, impl.cacheFolder);
+        Built built{cl::Kernel(program, name_.c_str())};
+        const auto limit = built.kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(impl.device);
+        const auto own = built.kernel.getWorkGroupInfo<CL_KERNEL_COMPILE_WORK_GROUP_SIZE>(impl.device);  // 0: any
         if (own[0] > 0) {
             // The device's limit decides: rusticl (Mesa 22.3) runs groups beyond the one it tells for a kernel.
             if (own[0] * own[1] > impl.caps.maxWorkGroupSize)
                 throw DeviceError(fmt::format("{}: works in groups of {} items, this device takes {}", name_,
                                               own[0] * own[1], impl.caps.maxWorkGroupSize));
-            localSize_ = {own[0], own[1]};
+            built.localSize = {own[0], own[1]};
         } else {
             const std::array<int, 2> wanted = localSizeOf(impl.tuning, name_);
-            localSize_[0] = std::min<std::size_t>(std::size_t(wanted[0]), limit);
-            localSize_[1] =
-                std::max<std::size_t>(std::min<std::size_t>(std::size_t(wanted[1]), limit / localSize_[0]), 1);
+            const std::size_t x = std::min<std::size_t>(std::size_t(wanted[0]), limit);
+            built.localSize = {x, std::max<std::size_t>(std::min<std::size_t>(std::size_t(wanted[1]), limit / x), 1)};
         }
-        kernel_ = kernel;
+        built_ = &variants_.emplace(options, std::move(built)).first->second;
         return 0;
     });
 }
@@ -59,7 +77,7 @@ void Kernel::setRaw(std::string_view argument, std::size_t size, const void* val
     const auto at = std::find(arguments_.begin(), arguments_.end(), argument);
     if (at == arguments_.end()) throw DeviceError(fmt::format("{}: the kernel has no argument '{}'", name_, argument));
     device_.impl().checked(fmt::format("{}: argument '{}' of {} bytes", name_, argument, size), [&] {
-        kernel_.setArg(cl_uint(at - arguments_.begin()), size, value);
+        built_->kernel.setArg(cl_uint(at - arguments_.begin()), size, value);
         return 0;
     });
 }
@@ -94,11 +112,12 @@ void Kernel::enqueueItems(std::size_t x, std::size_t y) {
     build();
     Device::Impl& impl = device_.impl();
     impl.checked(fmt::format("{}: launching {} x {} items", name_, x, y), [&] {
-        const cl::NDRange local(localSize_[0], localSize_[1]);
+        const std::array<std::size_t, 2>& group = built_->localSize;
+        const cl::NDRange local(group[0], group[1]);
         const auto roundUp = [](std::size_t n, std::size_t to) { return (n + to - 1) / to * to; };
-        const cl::NDRange global(roundUp(x, localSize_[0]), roundUp(y, localSize_[1]));
+        const cl::NDRange global(roundUp(x, group[0]), roundUp(y, group[1]));
         impl.record(name_, [&](cl::Event* event) {
-            impl.queue.enqueueNDRangeKernel(kernel_, cl::NullRange, global, local, nullptr, event);
+            impl.queue.enqueueNDRangeKernel(built_->kernel, cl::NullRange, global, local, nullptr, event);
         });
         return 0;
     });

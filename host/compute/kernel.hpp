@@ -2,6 +2,8 @@
 // A kernel with arguments by name, and the one way to launch it.
 
 #include <array>
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,6 +25,10 @@ public:
     /// Builds it, if nothing has yet; what follows does so too. Throws BuildError with the compiler's log.
     void build();
 
+    /// Makes `name` a constant of the source for what follows, before its arguments are set: a loop on a CPU should not
+    /// ask in each round what is the same for a whole frame. Every set of values is built once and kept.
+    Kernel& define(std::string_view name, int value);
+
     /// Sets the argument that the kernel's source calls `argument`; a surface also sets its layout.
     /// Throws DeviceError if there is no such argument or the driver refuses the value.
     Kernel& set(std::string_view argument, const Surface& surface);
@@ -42,18 +48,24 @@ public:
     /// Work-items a group, x and y: what the kernel requires, or the tuning table's within the kernel's limit.
     std::array<std::size_t, 2> localSize() {
         build();
-        return localSize_;
+        return built_->localSize;
     }
 
 private:
+    struct Built {
+        cl::Kernel kernel;
+        std::array<std::size_t, 2> localSize{1, 1};
+    };
+    std::string definitions() const;
     void setRaw(std::string_view argument, std::size_t size, const void* value);
     void setMemory(std::string_view argument, const cl::Memory& memory);
 
     Device device_;
     std::string name_, text_;
-    cl::Kernel kernel_;
     std::vector<std::string> arguments_;
-    std::array<std::size_t, 2> localSize_{1, 1};
+    std::map<std::string, int, std::less<>> defined_;
+    std::map<std::string, Built> variants_;  ///< by definitions()
+    Built* built_ = nullptr;                 ///< that of defined_, once it is built
 };
 
 }  // namespace earthshine

@@ -68,6 +68,7 @@ void AtrousStage::enqueuePair(const Images& images, const AtrousParams& params) 
     const int pieces = std::max(rows / wantedRows(extent), 1);
     AtrousParams pair = params;
     pair.pairRows = dividedUp(rows, pieces);
+    pair_.define("LIMITS_LONE", params.limitsLone);
     set(pair_, images, pair);
     pair_.enqueueItems(std::size_t(dividedUp(extent.widthPx, ATROUS_PAIR_STRIP(lanes()) * lanes())),
                        std::size_t(pieces * params.stepPx));

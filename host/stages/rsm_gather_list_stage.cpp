@@ -7,6 +7,7 @@ void RsmGatherListStage::enqueue(const RsmGatherStage::Images& images, const cl:
     const Extent extent = images.outIrradiance.extent();
     requireExtent("rsm_gather_list", "inNormalWs", images.normalWs, extent);
     requireExtent("rsm_gather_list", "inDepth", images.depth, extent);
+    kernel_.define("MAPPING", params.mapping).define("ROTATION", params.rotation);
     kernel_.set("inNormalWs", images.normalWs).set("inDepth", images.depth);
     setRsm(kernel_, device_, images.rsm);
     kernel_.set("lights", images.lights).set("pattern", images.pattern).set("noise", images.noise);

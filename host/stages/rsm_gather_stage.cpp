@@ -6,6 +6,7 @@ void RsmGatherStage::enqueue(const Images& images, const RsmGatherParams& params
     const Extent extent = images.outIrradiance.extent();
     requireExtent("rsm_gather", "inNormalWs", images.normalWs, extent);
     requireExtent("rsm_gather", "inDepth", images.depth, extent);
+    kernel_.define("MAPPING", params.mapping).define("ROTATION", params.rotation);
     kernel_.set("inNormalWs", images.normalWs).set("inDepth", images.depth);
     setRsm(kernel_, device_, images.rsm);
     kernel_.set("lights", images.lights)

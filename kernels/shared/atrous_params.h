@@ -33,7 +33,7 @@ typedef struct AtrousParams {
     f32 footprintM;             // width of a pixel: footprintM + depth footprintPerM
     f32 footprintPerM;
     f32 inverseStep;            // 1 / stepPx
-    i32 limitsLone;             // 0 or 1: is a lone pixel limited by what is around it?
+    i32 limitsLone;             // 0 or 1: is a lone pixel limited by what is around it? atrous_pair's LIMITS_LONE
     i32 pairRows;               // atrous_pair: rows of an item, > 0
 } AtrousParams;
 ES_ASSERT_SIZE(AtrousParams, 160);

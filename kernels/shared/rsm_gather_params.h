@@ -15,11 +15,11 @@ typedef struct RsmGatherParams {
     i32 lightCount;   // >= 0
     i32 sampleCount;  // a light, [1; 4096]
     f32 radiusUv;     // (0; 2], fraction of the map's side
-    i32 rotation;     // ROTATION_*: how each pixel moves the pattern
+    i32 rotation;     // ROTATION_*: how each pixel moves the pattern; the kernel's ROTATION
     f32 frameShift;   // [0; 1 / sampleCount): this frame moves u by it, of all pixels
     f32 frameTurnCos, frameTurnSin;  // and the pattern by this turn
     f32 mapScale;     // (0.1; 1]: a light's projection fills this part of the map's side, less where blocks stick out
-    i32 mapping;      // MAPPING_*: from the pattern's u to radii
+    i32 mapping;      // MAPPING_*: from the pattern's u to radii; the kernel's MAPPING
     i32 padding0, padding1;
 } RsmGatherParams;
 ES_ASSERT_SIZE(RsmGatherParams, 144);

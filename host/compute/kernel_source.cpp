@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <set>
 #include <sstream>
 
@@ -80,6 +83,31 @@ std::string expandKernelText(const std::string& file, const std::string& text, c
     std::set<std::string> seen{file};
     expandInto(out, file, text, folder, seen);
     return out;
+}
+
+std::string withFilesAndLines(const std::string& log, const std::string& expandedText) {
+    std::vector<std::string> places;  // of each line of the text
+    std::istringstream lines(expandedText);
+    std::string file, text;
+    for (int next = 1; std::getline(lines, text); ++next) {
+        places.push_back(fmt::format("{}:{}:", file, next));
+        if (std::istringstream mark(text); text.starts_with("#line ")) {
+            mark.ignore(6) >> next >> std::quoted(file);
+            --next;
+        }
+    }
+    constexpr std::string_view kWhole = "<kernel>:";
+    std::string named;
+    std::size_t done = 0;
+    for (std::size_t at = log.find(kWhole); at != std::string::npos; at = log.find(kWhole, done)) {
+        const std::size_t number = at + kWhole.size(), colon = log.find_first_not_of("0123456789", number);
+        std::size_t line = 0;
+        std::from_chars(log.data() + number, log.data() + std::min(colon, log.size()), line);
+        const bool isPlace = colon < log.size() && log[colon] == ':' && line >= 1 && line <= places.size();
+        named += log.substr(done, at - done) + (isPlace ? places[line - 1] : std::string(kWhole));
+        done = isPlace ? colon + 1 : number;
+    }
+    return named + log.substr(done);
 }
 
 std::vector<std::string> argumentNames(const std::string& text, const std::string& name, bool rsmRecords) {

@@ -22,6 +22,10 @@ std::string expandKernel(const std::string& file, const std::string& folder);
 /// The same for a text that is not among the library's, `file` being its name in messages; what it includes is.
 std::string expandKernelText(const std::string& file, const std::string& text, const std::string& folder);
 
+/// A compiler's log in which "<kernel>:N:", as NVIDIA's driver writes, past the #line marks, for line N of the whole
+/// expanded text, is replaced by the file and line there.
+std::string withFilesAndLines(const std::string& log, const std::string& expandedText);
+
 /// The argument names of kernel `name` in an expanded text, in order: one for a plain argument, name and nameLayout for
 /// a SURFACE_IN or SURFACE_OUT, what RSM_IN stands for with records or with images.
 std::vector<std::string> argumentNames(const std::string& expandedText, const std::string& name, bool rsmRecords);

@@ -10,6 +10,7 @@
 #include <functional>
 #include <thread>
 
+#include "compute/kernel_source.hpp"
 #include "earthshine/error.hpp"
 #include "earthshine/log.hpp"
 
@@ -87,7 +88,8 @@ cl::Program buildFromSource(const cl::Context& context, const cl::Device& device
     } catch (const cl::Error& error) {
         const auto buildLog = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
         throw BuildError(
-            fmt::format("{}.cl: {} on \"{}\" with {}", name, clErrorName(error.err()), deviceName, options), buildLog);
+            fmt::format("{}.cl: {} on \"{}\" with {}", name, clErrorName(error.err()), deviceName, options),
+            withFilesAndLines(buildLog, source));
     }
     return program;
 }

@@ -68,6 +68,21 @@ TEST(KernelSource, LineMarksKeepFilesAndLines) {
               "#line 5 \"a.cl\"\nfive\n");
 }
 
+TEST(KernelSource, MessagesOfTheWholeTextGetFilesAndLines) {
+    const std::string text =
+        "#line 1 \"a.cl\"\none\n"
+        "#line 1 \"b.clh\"\nb one\n"
+        "#line 3 \"b.clh\"\nb three\nb four\n"
+        "#line 3 \"a.cl\"\nthree\n";
+    EXPECT_EQ(withFilesAndLines("<kernel>:2:7: error: x\n<kernel>:7:1: note: y\n  ^\n", text),
+              "a.cl:1:7: error: x\nb.clh:4:1: note: y\n  ^\n");
+    EXPECT_EQ(withFilesAndLines("<kernel>:9:1: end", text), "a.cl:3:1: end");
+    // What is no such place stays.
+    for (const char* log : {"", "<kernel>:", "<kernel>:10:1: beyond", "<kernel>:0:", "<kernel>: x", "b.clh:3:1: known",
+                            "<kernel>:99999999999999999999999:"})
+        EXPECT_EQ(withFilesAndLines(log, text), log);
+}
+
 TEST(KernelSource, ATextOfAnotherIncludesTheLibrarys) {
     const std::string text = expandKernelText("own.cl", "#include \"lanes.clh\"\ntwo\n", "");
     EXPECT_TRUE(text.starts_with("#line 1 \"own.cl\"\n#line 1 \"lanes.clh\"\n"));

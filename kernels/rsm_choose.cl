@@ -100,8 +100,7 @@ __kernel void rsm_choose(SURFACE_IN(inDepth), __global const LightParams* restri
         vfloat cx[SET_PX], cy[SET_PX];
         for (int i = 0; i < SET_PX; ++i) diskCentre(&params.gather, &light, points.positionWs[i], &cx[i], &cy[i]);
         float radius = (light.gatherRadiusUv > 0.0f ? light.gatherRadiusUv : params.gather.radiusUv) * (float)size;
-        float scale = light.indirectScale * ES_INV_PI * (float)SET_PX * diskIntegral(radius) /
-                      (float)sampleCount;
+        float scale = light.indirectScale * ES_INV_PI * (float)SET_PX * diskIntegral(radius) / (float)sampleCount;
         __global RsmChoice* out = outChoices + ((l * params.rowCount + row) * setsInRow + firstSet) * sampleCount;
         for (int s = 0; s < sampleCount; ++s) {
             vfloat fx, fy;

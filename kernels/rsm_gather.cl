@@ -29,6 +29,7 @@ __kernel void rsm_gather(SURFACE_IN(inNormalWs), SURFACE_IN(inDepth), RSM_IN(rsm
                          __global const float* restrict noise, SURFACE_OUT(outIrradiance), const RsmGatherParams params) {
     Pixel px = itemPixel();
     if (isOutside(px, outIrradianceLayout)) return;
+    // One store for sky and surface: of two, LLVM makes one that has forgotten to go past the caches.
     vfloat3 irradiance = make3(0.0f, 0.0f, 0.0f);
     vfloat depth = load1(inDepth, px);
     vmask isSurface = depth > 0.0f;

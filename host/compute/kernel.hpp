@@ -22,11 +22,14 @@ public:
     Kernel(const Device& device, std::string name, std::string text = {})
         : device_(device), name_(std::move(name)), text_(std::move(text)) {}
 
+    Kernel(Kernel&&) = default;
+    Kernel(const Kernel&) = delete;
+
     /// Builds it, if nothing has yet; what follows does so too. Throws BuildError with the compiler's log.
     void build();
 
-    /// Makes `name` a constant of the source for what follows, before its arguments are set: a loop on a CPU should not
-    /// ask in each round what is the same for a whole frame. Every set of values is built once and kept.
+    /// Makes `name` a constant of the source for what follows: a loop on a CPU should not ask in each round what is the
+    /// same for a whole frame. Every set of values is built once and kept, with arguments of its own: set all anew.
     Kernel& define(std::string_view name, int value);
 
     /// Sets the argument that the kernel's source calls `argument`; a surface also sets its layout.

@@ -88,7 +88,7 @@ std::string expandKernelText(const std::string& file, const std::string& text, c
 std::string withFilesAndLines(const std::string& log, const std::string& expandedText) {
     std::vector<std::string> places;  // of each line of the text
     std::istringstream lines(expandedText);
-    std::string file, text;
+    std::string file = "<kernel>", text;
     for (int next = 1; std::getline(lines, text); ++next) {
         places.push_back(fmt::format("{}:{}:", file, next));
         if (std::istringstream mark(text); text.starts_with("#line ")) {

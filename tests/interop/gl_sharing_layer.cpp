@@ -88,6 +88,7 @@ cl_int CL_API_CALL getDeviceInfo(cl_device_id device, cl_device_info name, std::
     if (name != CL_DEVICE_EXTENSIONS) return target.clGetDeviceInfo(device, name, size, value, sizeOut);
     std::string more = "cl_khr_gl_sharing";
     if (environment("EARTHSHINE_LAYER_EVENTS") == "1") more += " cl_khr_gl_event";
+    // Not what a driver has of these by itself, nor what the other transport would open with.
     return extensionsWith(target, more, {"cl_khr_gl_", "cl_khr_external_"}, device, size, value, sizeOut);
 }
 

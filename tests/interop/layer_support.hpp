@@ -111,8 +111,7 @@ private:
     GLint texture_ = 0, pack_ = 0, unpack_ = 0;
 };
 
-/// Its device's extensions, and more; not those that start with one of `hidden`: the driver's own of this
-/// kind, and what the other transport would open with.
+/// Its device's extensions, and more; not those that start with one of `hidden`.
 inline cl_int extensionsWith(const cl_icd_dispatch& target, const std::string& more,
                              std::initializer_list<std::string_view> hidden, cl_device_id device, std::size_t size,
                              void* value, std::size_t* sizeOut) {

@@ -2,18 +2,20 @@
 
 namespace earthshine {
 
-void RsmGatherStage::enqueue(const Images& images, const RsmGatherParams& params) {
+void RsmGatherStage::set(Kernel& kernel, const char* name, const Device& device, const Images& images,
+                         const RsmGatherParams& params) {
     const Extent extent = images.outIrradiance.extent();
-    requireExtent("rsm_gather", "inNormalWs", images.normalWs, extent);
-    requireExtent("rsm_gather", "inDepth", images.depth, extent);
-    kernel_.define("MAPPING", params.mapping).define("ROTATION", params.rotation);
-    kernel_.set("inNormalWs", images.normalWs).set("inDepth", images.depth);
-    setRsm(kernel_, device_, images.rsm);
-    kernel_.set("lights", images.lights)
-        .set("pattern", images.pattern)
-        .set("noise", images.noise)
-        .set("outIrradiance", images.outIrradiance);
-    kernel_.setParams("params", params);
+    requireExtent(name, "inNormalWs", images.normalWs, extent);
+    requireExtent(name, "inDepth", images.depth, extent);
+    kernel.define("MAPPING", params.mapping).define("ROTATION", params.rotation);
+    kernel.set("inNormalWs", images.normalWs).set("inDepth", images.depth);
+    setRsm(kernel, device, images.rsm);
+    kernel.set("lights", images.lights).set("pattern", images.pattern).set("noise", images.noise);
+    kernel.set("outIrradiance", images.outIrradiance).setParams("params", params);
+}
+
+void RsmGatherStage::enqueue(const Images& images, const RsmGatherParams& params) {
+    set(kernel_, "rsm_gather", device_, images, params);
     kernel_.enqueue(images.outIrradiance.extent());
 }
 

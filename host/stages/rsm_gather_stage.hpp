@@ -22,6 +22,11 @@ public:
     explicit RsmGatherStage(const Device& device) : device_(device), kernel_(device, "rsm_gather") {}
     void enqueue(const Images& images, const RsmGatherParams& params);
 
+    /// Every argument that `rsm_gather` and `rsm_gather_list` share, for `kernel`, either of them; `name` is for
+    /// errors.
+    static void set(Kernel& kernel, const char* name, const Device& device, const Images& images,
+                    const RsmGatherParams& params);
+
 private:
     Device device_;
     Kernel kernel_;

@@ -11,10 +11,11 @@
 
 #include <fmt/format.h>
 #include <glm/glm.hpp>
-#include <glm/gtc/matrix_transform.hpp>
 
 #include "earthshine/error.hpp"
 #include "parallel.hpp"
+#include "raster/trace/camera_rays.hpp"
+#include "raster/trace/directions.hpp"
 #include "raster/trace/light_source.hpp"
 #include "raster/trace/sobol.hpp"
 #include "raster/trace/trace_scene.hpp"
@@ -31,67 +32,7 @@ constexpr float kMostSurvival = 0.95f;  // so that paths end even among perfect 
 // Pixels a side, and samples at once, of a block whose rays are traced in the order of their directions.
 constexpr int kBlockPx = 16;
 constexpr int kBlockSamples = 16;
-// Cells of directions, by which the rays are sorted.
-constexpr std::uint32_t kCellColumns = 64, kCells = kCellColumns * kCellColumns;
 constexpr std::size_t kPathsAtOnce = 64;  // few enough to stay in the first cache
-
-/// Which cell of directions a unit vector lies in: of an octahedron unfolded to a square, numbered along a curve that
-/// stays close to itself (Morton's).
-std::uint32_t cellOf(const glm::vec3& direction) {
-    const float scale = 1.0f / (std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z));
-    glm::vec2 p = glm::vec2(direction) * scale;
-    if (direction.z < 0.0f) p = {std::copysign(1.0f - std::abs(p.y), p.x), std::copysign(1.0f - std::abs(p.x), p.y)};
-    const auto spread = [](float t) {
-        auto bits = std::min(std::uint32_t((0.5f * t + 0.5f) * float(kCellColumns)), kCellColumns - 1);
-        bits = (bits | bits << 4) & 0x0f0fu;
-        bits = (bits | bits << 2) & 0x3333u;
-        return (bits | bits << 1) & 0x5555u;
-    };
-    return spread(p.x) | spread(p.y) << 1;
-}
-
-/// A direction about the unit vector `normal`, as likely as its cosine.
-glm::vec3 cosineDirection(const glm::vec3& normal, const glm::vec2& random) {
-    // Orthonormal basis: Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
-    const float sign = std::copysign(1.0f, normal.z);
-    const float a = -1.0f / (sign + normal.z), b = normal.x * normal.y * a;
-    const glm::vec3 tangent(1.0f + sign * normal.x * normal.x * a, sign * b, -sign * normal.x);
-    const glm::vec3 bitangent(b, sign + normal.y * normal.y * a, -normal.y);
-    const float radius = std::sqrt(random.x), angle = 2.0f * kPi * random.y;
-    return radius * std::cos(angle) * tangent + radius * std::sin(angle) * bitangent +
-           std::sqrt(std::max(1.0f - random.x, 0.0f)) * normal;
-}
-
-/// Rays of the camera, in trace space, t from 0 at the near plane to 1 at the far one (or without end).
-class CameraRays {
-public:
-    CameraRays(const Camera& camera, Extent extent, const glm::dvec3& originWs)
-        : extent_(extent),
-          viewFromTrace_(glm::dmat4(camera.viewFromWorld) * glm::translate(glm::dmat4(1.0), originWs)),
-          traceFromClip_(glm::inverse(glm::dmat4(camera.clipFromView) * viewFromTrace_)) {}
-
-    /// Through the centre of a pixel, which may lie beyond the picture.
-    Ray through(int xPx, int yPx) const {
-        const double x = 2.0 * (xPx + 0.5) / extent_.widthPx - 1.0;
-        const double y = 1.0 - 2.0 * (yPx + 0.5) / extent_.heightPx;
-        const auto at = [&](double z) { return traceFromClip_ * glm::dvec4(x, y, z, 1.0); };
-        const glm::dvec4 nearClip = at(-1.0), middleClip = at(0.0), farClip = at(1.0);
-        const glm::dvec3 near = glm::dvec3(nearClip) / nearClip.w;
-        const glm::dvec3 towards = glm::dvec3(middleClip) / middleClip.w - near;
-        Ray ray{glm::vec3(near), glm::vec3(towards), 0.0f, std::numeric_limits<float>::infinity()};
-        // A projection without far plane has w = 0 there, or what rounding makes of it.
-        if (std::abs(farClip.w) < 1e-9 * std::abs(nearClip.w)) return ray;
-        const glm::dvec3 whole = glm::dvec3(farClip) / farClip.w - near;
-        if (glm::dot(whole, towards) > 0.0) ray.tFar = float(glm::length(whole) / glm::length(towards));
-        return ray;
-    }
-
-    float depth(const glm::vec3& position) const { return float(-(viewFromTrace_ * glm::dvec4(position, 1.0f)).z); }
-
-private:
-    Extent extent_;
-    glm::dmat4 viewFromTrace_, traceFromClip_;
-};
 
 /// One of a pixel.
 struct Sample {
